@@ -66,6 +66,8 @@ ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:
 is "three tables of one size do not determine the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
+ln -s 1.tsv same.tsv
+fails "a file by two names" 2 'the same file is given twice' ballcal --balls 1.tsv:1mm --balls same.tsv:2mm
 fails "a diameter in seconds" 2 'want a diameter' ballcal --balls 1.tsv:5s
 fails "noise without a duration" 2 'both --noise and --pulse-duration' ballcal --balls 1.tsv:1mm --noise 1V
 fails "more false alarms than pulses" 2 'for any threshold' ballcal --balls 2.tsv:2mm --exponent 5 --noise 1V \

@@ -57,6 +57,10 @@ near "the concentration determines the number" "$(column time1 mass.tsv | wc -l)
 is "clean oil carries no particle" "$(timeout 20 sensorsim --concentration 0 --uniform 100um:100um \
 	--duration 1s --truth - | column time1 /dev/stdin | wc -l)" 0
 
+# The second sensor is 20 ms behind the first, and half a pulse some milliseconds long.
+printf 'time\tdiameter\n-0.05\t1e-4\n-0.04\t1e-4\n-0.02\t1e-4\n0.1\t1e-4\n' | sensorsim --duration 1s --truth early.tsv >early.au
+is "particles that passed before the record begins are not in the truth" \
+	"$(column particle early.tsv | tr '\n' ' ')" "2 3 "
 # a truth table is a scene; realisations and seeds differ
 sensorsim --gain 0.909 --snr 30dB --duration 19.95s pairs.tsv >again.au
 frames pairs.au 2 | head -20000 >a

@@ -86,6 +86,15 @@ refuse() {
 	{ header "$@"; ramp; } >bad.nrrd
 	fails "$name" 1 "$pattern" records bad.nrrd
 }
+for line in '/^sizes/' '/^type/s/type/TYPE/' 's/^endian.*/key:=1\nkey:=2/'; do
+	{
+		printf '%s\n' NRRD0004
+		header '' | LC_ALL=C sed -n "${line}p"
+		header '' | sed 1d
+		ramp
+	} >twice.nrrd
+	fails "a field of the header that is given twice ($line)" 1 "twice.nrrd: record 1: '[a-z]*' is given twice" records twice.nrrd
+done
 { header ''; ramp | head -c 50; } >short.nrrd
 fails 'a truncated record' 1 'short.nrrd: record 1: want 96 bytes, got 50' records short.nrrd
 fails 'a truncated record in a pipe' 1 'standard input: record 1: want 96 bytes, got 50' \

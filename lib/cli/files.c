@@ -46,6 +46,17 @@ static void claim(FILE *f, const char *name, int written)
 		claim_state(&s, name, written);
 }
 
+int file_is_read(const char *path)
+{
+	struct stat s;
+
+	for (int i = 0; i < nused && stat(path, &s) == 0; i++)
+		if (!used[i].written && used[i].device == s.st_dev &&
+			used[i].number == s.st_ino)
+			return 1;
+	return 0;
+}
+
 static int follow;
 
 void file_follow(void)

@@ -21,6 +21,8 @@ void files_start(void);
 void file_claim_output(void);
 /* Marks a file that is opened later, but must not be an output, as read. */
 void file_claim_input(const char *path);
+/* Whether the path is a regular file that is read already. */
+int file_is_read(const char *path);
 /* --follow: inputs without an end mark are still being written. */
 void file_follow(void);
 int file_followed(void);

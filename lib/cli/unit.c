@@ -1,4 +1,5 @@
 #include "cli/unit.h"
+#include "cli/msg.h"
 #include <ctype.h>
 #include <math.h>
 #include <stddef.h>
@@ -7,65 +8,66 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Spellings of every unit. power: exponent to which a prefix is raised; 0 if the unit
- * takes no prefix. */
+/* Spellings of every unit: times / over * 10^ten of the SI unit.  power: exponent to
+ * which a prefix is raised; 0 if the unit takes no prefix. */
 static const struct spelling {
 	enum unit unit;
 	const char *text;
-	double scale;
+	int ten;
+	double times, over;
 	int power;
 } spellings[] = {
-	{ UNIT_LENGTH, "m", 1, 1 },
-	{ UNIT_AREA, "m2", 1, 2 },
-	{ UNIT_VOLUME, "m3", 1, 3 },
-	{ UNIT_VOLUME, "L", 1e-3, 1 },
-	{ UNIT_VOLUME, "l", 1e-3, 1 },
-	{ UNIT_PRESSURE, "Pa", 1, 1 },
-	{ UNIT_PRESSURE, "bar", 1e5, 0 },
-	{ UNIT_FORCE, "N", 1, 1 },
-	{ UNIT_FREQUENCY, "Hz", 1, 1 },
-	{ UNIT_FREQUENCY, "rpm", 1.0 / 60, 0 },
-	{ UNIT_TIME, "s", 1, 1 },
-	{ UNIT_TIME, "min", 60, 0 },
-	{ UNIT_TIME, "h", 3600, 0 },
-	{ UNIT_TIME, "d", 86400, 0 },
-	{ UNIT_VOLTAGE, "V", 1, 1 },
-	{ UNIT_CURRENT, "A", 1, 1 },
-	{ UNIT_FLOW, "m3/s", 1, 3 },
-	{ UNIT_FLOW, "L/min", 1e-3 / 60, 1 },
-	{ UNIT_FLOW, "L/s", 1e-3, 1 },
-	{ UNIT_FLOW, "L/h", 1e-3 / 3600, 1 },
-	{ UNIT_FLOW, "l/min", 1e-3 / 60, 1 },
-	{ UNIT_FLOW, "l/s", 1e-3, 1 },
-	{ UNIT_FLOW, "l/h", 1e-3 / 3600, 1 },
-	{ UNIT_SPEED, "m/s", 1, 1 },
-	{ UNIT_VISCOSITY, "Pa.s", 1, 1 },
-	{ UNIT_ANGLE, "rad", 1, 1 },
-	{ UNIT_ANGLE, "deg", M_PI / 180, 0 },
-	{ UNIT_FRACTION, "%", 1e-2, 0 },
-	{ UNIT_DECIBEL, "dB", 1, 0 },
-	{ UNIT_CONCENTRATION, "kg/m3", 1, 0 },
-	{ UNIT_CONCENTRATION, "g/L", 1, 1 },
-	{ UNIT_DENSITY, "kg/m3", 1, 0 },
-	{ UNIT_DENSITY, "g/cm3", 1000, 0 },
+	{ UNIT_LENGTH, "m", 0, 1, 1, 1 },
+	{ UNIT_AREA, "m2", 0, 1, 1, 2 },
+	{ UNIT_VOLUME, "m3", 0, 1, 1, 3 },
+	{ UNIT_VOLUME, "L", -3, 1, 1, 1 },
+	{ UNIT_VOLUME, "l", -3, 1, 1, 1 },
+	{ UNIT_PRESSURE, "Pa", 0, 1, 1, 1 },
+	{ UNIT_PRESSURE, "bar", 5, 1, 1, 0 },
+	{ UNIT_FORCE, "N", 0, 1, 1, 1 },
+	{ UNIT_FREQUENCY, "Hz", 0, 1, 1, 1 },
+	{ UNIT_FREQUENCY, "rpm", 0, 1, 60, 0 },
+	{ UNIT_TIME, "s", 0, 1, 1, 1 },
+	{ UNIT_TIME, "min", 0, 60, 1, 0 },
+	{ UNIT_TIME, "h", 0, 3600, 1, 0 },
+	{ UNIT_TIME, "d", 0, 86400, 1, 0 },
+	{ UNIT_VOLTAGE, "V", 0, 1, 1, 1 },
+	{ UNIT_CURRENT, "A", 0, 1, 1, 1 },
+	{ UNIT_FLOW, "m3/s", 0, 1, 1, 3 },
+	{ UNIT_FLOW, "L/min", -3, 1, 60, 1 },
+	{ UNIT_FLOW, "L/s", -3, 1, 1, 1 },
+	{ UNIT_FLOW, "L/h", -3, 1, 3600, 1 },
+	{ UNIT_FLOW, "l/min", -3, 1, 60, 1 },
+	{ UNIT_FLOW, "l/s", -3, 1, 1, 1 },
+	{ UNIT_FLOW, "l/h", -3, 1, 3600, 1 },
+	{ UNIT_SPEED, "m/s", 0, 1, 1, 1 },
+	{ UNIT_VISCOSITY, "Pa.s", 0, 1, 1, 1 },
+	{ UNIT_ANGLE, "rad", 0, 1, 1, 1 },
+	{ UNIT_ANGLE, "deg", 0, M_PI, 180, 0 },
+	{ UNIT_FRACTION, "%", -2, 1, 1, 0 },
+	{ UNIT_DECIBEL, "dB", 0, 1, 1, 0 },
+	{ UNIT_CONCENTRATION, "kg/m3", 0, 1, 1, 0 },
+	{ UNIT_CONCENTRATION, "g/L", 0, 1, 1, 1 },
+	{ UNIT_DENSITY, "kg/m3", 0, 1, 1, 0 },
+	{ UNIT_DENSITY, "g/cm3", 3, 1, 1, 0 },
 };
 
 static const struct {
 	const char *text;
-	double scale;
+	int ten;
 } prefixes[] = {
-	{ "f", 1e-15 },
-	{ "p", 1e-12 },
-	{ "n", 1e-9 },
-	{ "u", 1e-6 },
-	{ "\xc2\xb5", 1e-6 },
-	{ "\xce\xbc", 1e-6 }, /* micro sign, Greek mu */
-	{ "m", 1e-3 },
-	{ "c", 1e-2 },
-	{ "k", 1e3 },
-	{ "M", 1e6 },
-	{ "G", 1e9 },
-	{ "T", 1e12 },
+	{ "f", -15 },
+	{ "p", -12 },
+	{ "n", -9 },
+	{ "u", -6 },
+	{ "\xc2\xb5", -6 },
+	{ "\xce\xbc", -6 }, /* micro sign, Greek mu */
+	{ "m", -3 },
+	{ "c", -2 },
+	{ "k", 3 },
+	{ "M", 6 },
+	{ "G", 9 },
+	{ "T", 12 },
 };
 
 enum { NSPELLINGS = sizeof spellings / sizeof *spellings };
@@ -79,29 +81,61 @@ const char *unit_name(enum unit unit)
 	return "";
 }
 
-/* Scale of a suffix of the given length, or 0 if it does not suit the unit. */
-static double suffix_scale(const char *text, size_t length, enum unit unit)
+/* The unit of a suffix of the given length, with its prefix in the power of ten; text
+ * NULL if it does not suit. */
+static struct spelling find_suffix(const char *text, size_t length, enum unit unit)
 {
 	for (size_t i = 0; i < NSPELLINGS; i++) {
-		const struct spelling *s = &spellings[i];
-		size_t n = strlen(s->text);
+		struct spelling s = spellings[i];
+		size_t n = strlen(s.text);
 
-		if ((s->unit != unit && unit != UNIT_ANY) || n > length ||
-			memcmp(text + length - n, s->text, n) != 0)
+		if ((s.unit != unit && unit != UNIT_ANY) || n > length ||
+			memcmp(text + length - n, s.text, n) != 0)
 			continue;
 		if (n == length)
-			return s->scale;
-		for (size_t k = 0; s->power && k < NPREFIXES; k++)
+			return s;
+		for (size_t k = 0; s.power && k < NPREFIXES; k++)
 			if (strlen(prefixes[k].text) == length - n &&
-				memcmp(text, prefixes[k].text, length - n) == 0)
-				return s->scale * pow(prefixes[k].scale, s->power);
+				memcmp(text, prefixes[k].text, length - n) == 0) {
+				s.ten += s.power * prefixes[k].ten;
+				return s;
+			}
 	}
-	return 0;
+	return (struct spelling){ .text = NULL };
+}
+
+/* The decimal number of n characters times 10^ten: the double nearest to it, which the
+ * product of two rounded numbers need not be. */
+static double shift_decimal(const char *text, size_t n, int ten)
+{
+	enum { MOST = 100000 }; /* beyond double precision, and far from overflow */
+	const char *e = memchr(text, 'e', n);
+	long exponent = 0;
+	char *shifted;
+	double value;
+
+	e = e ? e : memchr(text, 'E', n);
+	if (e) {
+		exponent = strtol(e + 1, NULL, 10);
+		exponent = exponent > MOST ? MOST : exponent < -MOST ? -MOST : exponent;
+		n = (size_t)(e - text);
+	}
+	shifted = xprintf("%.*se%ld", (int)n, text, exponent + ten);
+	value = strtod(shifted, NULL);
+	free(shifted);
+	return value;
+}
+
+static double in_si(const char *text, size_t n, const struct spelling *s)
+{
+	return shift_decimal(text, n, s->ten) * s->times / s->over;
 }
 
 double unit_scale(const char *text, enum unit unit)
 {
-	return suffix_scale(text, strlen(text), unit);
+	struct spelling s = find_suffix(text, strlen(text), unit);
+
+	return s.text ? in_si("1", 1, &s) : 0;
 }
 
 /* The unit in which a quantity is shown, where that is not the SI unit. */
@@ -117,12 +151,12 @@ static const struct spelling *shown_spelling(enum unit unit)
 	return NULL;
 }
 
-static double prefix_scale(char prefix)
+static int prefix_ten(char prefix)
 {
 	for (size_t k = 0; k < NPREFIXES; k++)
 		if (prefixes[k].text[0] == prefix && !prefixes[k].text[1])
-			return prefixes[k].scale;
-	return 1;
+			return prefixes[k].ten;
+	return 0;
 }
 
 const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT])
@@ -132,12 +166,16 @@ const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT])
 			? NULL
 			: shown_spelling(unit);
 	char prefix[2] = "";
-	double scale = s ? s->scale : 1;
+	double scale = s ? in_si("1", 1, s) : 1;
 
 	/* The largest prefix, "" among them, that leaves at least 1; times of a second
 	 * and more stay in seconds. */
 	for (const char *p = "pnum kMG"; s && s->power && *p; p++) {
-		double prefixed = s->scale * pow(prefix_scale(*p), s->power);
+		struct spelling with = *s;
+		double prefixed;
+
+		with.ten += s->power * prefix_ten(*p);
+		prefixed = in_si("1", 1, &with);
 
 		if (unit == UNIT_TIME && prefixed > 1)
 			break;
@@ -167,7 +205,6 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 {
 	char *rest;
 	size_t length;
-	double scale = 1;
 
 	/* strtod also accepts blanks, nan and inf; options do not. */
 	*value = decimal_parse(text, &rest);
@@ -175,13 +212,14 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 		return "is not a number";
 	length = strcspn(rest, stop);
 	if (length > 0) {
-		scale = suffix_scale(rest, length, unit);
-		if (scale <= 0)
+		struct spelling s = find_suffix(rest, length, unit);
+
+		if (!s.text)
 			return unit == UNIT_COUNT || unit == UNIT_NONE
 				       ? "takes no unit"
 				       : "has the wrong unit";
+		*value = in_si(text, (size_t)(rest - text), &s);
 	}
-	*value *= scale;
 	if (!isfinite(*value))
 		return "is out of range";
 	if (unit == UNIT_COUNT && *value != floor(*value))
@@ -313,7 +351,7 @@ static struct decimal shortest(double value)
 	return d;
 }
 
-static void write_exponent(int exponent, char *to)
+static char *write_exponent(int exponent, char *to)
 {
 	int size = abs(exponent);
 
@@ -323,7 +361,7 @@ static void write_exponent(int exponent, char *to)
 		*to++ = (char)('0' + size / 100);
 	*to++ = (char)('0' + size / 10 % 10);
 	*to++ = (char)('0' + size % 10);
-	*to = '\0';
+	return to;
 }
 
 static void write_digits(uint64_t value, int count, char *to)
@@ -332,8 +370,8 @@ static void write_digits(uint64_t value, int count, char *to)
 		to[count] = (char)('0' + value % 10);
 }
 
-/* As printf() does for %g with as many digits. */
-static void write_decimal(const struct decimal *d, int negative, char *to)
+/* As printf() does for %g with as many digits; returns the end. */
+static char *write_decimal(const struct decimal *d, int negative, char *to)
 {
 	enum { HALF = 8, HALF_UNIT = 100000000 }; /* two short chains of divisions */
 	char digit[LONGEST];
@@ -361,14 +399,11 @@ static void write_decimal(const struct decimal *d, int negative, char *to)
 		*to++ = '.';
 	memcpy(to, digit + whole, (size_t)(used - whole));
 	to += used - whole;
-	if (plain)
-		*to = '\0';
-	else
-		write_exponent(d->exponent, to);
+	return plain ? to : write_exponent(d->exponent, to);
 }
 
 /* A whole number of less than 15 digits. */
-static void write_whole(long long value, char *to)
+static char *write_whole(long long value, char *to)
 {
 	char digits[24];
 	int n = 0;
@@ -382,36 +417,43 @@ static void write_whole(long long value, char *to)
 	while ((value /= 10) > 0);
 	while (n > 0)
 		*to++ = digits[--n];
-	*to = '\0';
+	return to;
 }
 
 /* The same, digit by digit. */
-static void write_slowly(double value, char text[NUMBER_TEXT])
+static char *write_slowly(double value, char text[NUMBER_TEXT])
 {
 	for (int digits = SHORTEST; digits <= LONGEST; digits++) {
 		snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
 		if (strtod(text, NULL) == value)
 			break;
 	}
+	return text + strlen(text);
+}
+
+size_t number_write(double value, char text[NUMBER_TEXT])
+{
+	double size = fabs(value);
+	struct decimal d = { .count = 0 };
+	char *end;
+
+	/* Powers of ten stay normal. */
+	if (size > 1e-280 && size < 1e280 && !(size < 1e14 && value == floor(value)))
+		d = shortest(size);
+	if (isnan(value))
+		end = (char *)memcpy(text, "nan", 3) + 3;
+	else if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value)))
+		end = write_whole((long long)value, text);
+	else if (d.count > 0)
+		end = write_decimal(&d, value < 0, text);
+	else
+		end = write_slowly(value, text);
+	*end = '\0';
+	return (size_t)(end - text);
 }
 
 const char *number_text(double value, char text[NUMBER_TEXT])
 {
-	double size = fabs(value);
-
-	if (isnan(value))
-		return strcpy(text, "nan");
-	if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value))) {
-		write_whole((long long)value, text);
-	} else if (size > 1e-280 && size < 1e280) { /* powers of ten stay normal */
-		struct decimal d = shortest(size);
-
-		if (d.count > 0)
-			write_decimal(&d, value < 0, text);
-		else
-			write_slowly(value, text);
-	} else {
-		write_slowly(value, text);
-	}
+	number_write(value, text);
 	return text;
 }

@@ -8,6 +8,8 @@
 #ifndef CLI_UNIT_H
 #define CLI_UNIT_H
 
+#include <stddef.h>
+
 enum unit {
 	UNIT_NONE,          /* a plain number */
 	UNIT_COUNT,         /* a whole number */
@@ -54,6 +56,8 @@ const char *unit_meant(const char *text, enum unit unit);
 /* Shortest decimal of 15 to 17 digits that reads back as the same number, or "nan". */
 enum { NUMBER_TEXT = 32 };
 const char *number_text(double value, char text[NUMBER_TEXT]);
+/* The same; returns its length. */
+size_t number_write(double value, char text[NUMBER_TEXT]);
 
 /* An SI value as a person writes it, with prefix and unit: "1mm", "210GPa", "10L/min".
  * Six digits; unit_parse() reads it back.  A plain number has no unit. */

@@ -79,18 +79,17 @@ void debris_contact(
 {
 	const struct stress_par *s = &d->par.stress;
 	double sum = 0, edge = 0, most = 0;
-	size_t cells = 0;
+	size_t cells = 0, nx = (size_t)s->nx;
 
 	memset(step, 0, sizeof *step);
 	for (int y = 0; y < s->ny; y++) {
 		const double *row = pressure + grid_at(s->nx, 0, y);
 		int inner = y > 0 && y < s->ny - 1;
 
-		for (int x = 0; x < s->nx; x++) {
+		for (size_t x = lanes_next(row, 0, nx); x < nx;
+			x = lanes_next(row, x + 1, nx)) {
 			double p = row[x];
 
-			if (p == 0)
-				continue;
 			sum += p;
 			cells += p > 0;
 			most = p > most ? p : most;

@@ -1,4 +1,6 @@
 #include "debris/surrogate.h"
+#include "num/lanes.h"
+#include "num/lesser.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -149,7 +151,8 @@ static double flow_of(const double *pressure, size_t cells, double hardness)
 {
 	double loaded = 0, flows = 0;
 
-	for (size_t i = 0; i < cells; i++) {
+	for (size_t i = lanes_next(pressure, 0, cells); i < cells;
+		i = lanes_next(pressure, i + 1, cells)) {
 		loaded += pressure[i] > 0;
 		flows += pressure[i] > 0 && hardness > 0 && pressure[i] >= hardness;
 	}
@@ -164,21 +167,20 @@ struct surrogate_contact surrogate_contact(
 
 	for (size_t y = 0; y + 1 < ny; y++) {
 		const double *p = pressure + y * nx, *q = p + nx;
-		double both = p[0] + q[0], rise = q[0] - p[0];
+		size_t a = lanes_next(p, 0, nx), b = lanes_next(q, 0, nx);
 
 		for (size_t x = 1; x < nx; x++) {
-			double last = both, gx, gy = rise;
+			double gx, gy;
 
-			/* Most of the surface is free. */
-			while (last == 0 && x + 2 < nx &&
-				p[x] + p[x + 1] + q[x] + q[x + 1] == 0)
-				x += 2;
-			both = p[x] + q[x];
-			rise = q[x] - p[x];
-			if (last == 0 && both == 0)
+			/* Most of the surface is free: the next loaded cells. */
+			a = a + 1 < x ? lanes_next(p, x - 1, nx) : a;
+			b = b + 1 < x ? lanes_next(q, x - 1, nx) : b;
+			if (x < a && x < b) {
+				x = lesser(a, b) - 1;
 				continue;
-			gx = both - last;
-			gy += rise;
+			}
+			gx = (p[x] + q[x]) - (p[x - 1] + q[x - 1]);
+			gy = (q[x] - p[x]) + (q[x - 1] - p[x - 1]);
 			xx += gx * gx;
 			xy += gx * gy;
 			yy += gy * gy;

@@ -29,6 +29,7 @@ struct header {
 	int endian; /* 0 not stated, 1 little, 2 big */
 	int type;   /* 0 not stated, 4 float, 8 double */
 	char *fields;
+	struct keys seen[2]; /* names of fields, in small letters, and of keys */
 };
 
 static _Noreturn void bad(const struct place *at, const char *what, const char *value)
@@ -209,6 +210,17 @@ static void read_key(struct place *at, struct header *h, struct record *r,
 	free(text);
 }
 
+/* Of two values neither is certain to be meant. */
+static void see(const struct place *at, struct header *h, char *name, int key)
+{
+	for (char *c = name; *c && !key; c++)
+		*c = (char)tolower((unsigned char)*c);
+	if (keys_get(&h->seen[key], name))
+		die(EXIT_RUN, "%s: record %ld: '%.30s' is given twice in the header",
+			at->name, at->record, name);
+	keys_set(&h->seen[key], name, "");
+}
+
 static void read_header(struct place *at, struct header *h, struct record *r)
 {
 	size_t size = 0;
@@ -221,6 +233,7 @@ static void read_header(struct place *at, struct header *h, struct record *r)
 			if (!colon)
 				bad(at, "header line", line);
 			*colon = '\0';
+			see(at, h, line, colon[1] == '=');
 			if (colon[1] == '=')
 				read_key(at, h, r, line, colon + 2);
 			else if (colon[1] == ' ')
@@ -234,6 +247,8 @@ static void read_header(struct place *at, struct header *h, struct record *r)
 		die(EXIT_RUN, "%s: record %ld: the stream ends inside the header",
 			at->name, at->record);
 	free(line);
+	keys_free(&h->seen[0]);
+	keys_free(&h->seen[1]);
 }
 
 static void check_header(const struct place *at, struct header *h)

@@ -639,7 +639,7 @@ void table_put(struct table_out *t, double value)
 	need_room(t, 1 + NUMBER_TEXT);
 	if (t->ncells++)
 		t->row[t->length++] = '\t';
-	t->length += strlen(number_text(value, t->row + t->length));
+	t->length += number_write(value, t->row + t->length);
 }
 
 void table_end_row(struct table_out *t)

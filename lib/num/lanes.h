@@ -9,6 +9,7 @@
 #define NUM_LANES_H
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -116,6 +117,22 @@ static inline lanes lanes_complex(lanes a, lanes b)
 static inline lanes lanes_conj(lanes a)
 {
 	return (lanes){ a[0], -a[1] };
+}
+
+/* The first element from i on that is not zero, or n. */
+static inline size_t lanes_next(const double *x, size_t i, size_t n)
+{
+	for (; i + 8 <= n && x[i] == 0; i += 8) {
+		lane_words w[4], any;
+
+		memcpy(w, x + i, sizeof w);
+		any = (w[0] | w[1]) | (w[2] | w[3]);
+		if (any[0] | any[1])
+			break;
+	}
+	while (i < n && x[i] == 0)
+		i++;
+	return i;
 }
 
 /* sum += x, lane by lane */

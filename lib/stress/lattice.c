@@ -9,10 +9,9 @@
 /* ORDER: also in sum_points() and sum_rows(). */
 enum { ORDER = 8, SIDE = ORDER / 2 - 1 };
 
-/* Points to the side of a square, and cells of a row, that share a bound.  Surrogates of
- * 128 x 128 to 1024 x 1024 cells take the same time within its scatter, 5 %, with 2 to 8
- * points, and with 4 to 16 cells. */
-enum { SQUARE = 4, PIECE = 8 };
+/* Points to the side of a square that share a bound.  Surrogates of 128 x 128 to
+ * 1024 x 1024 cells take the same time within its scatter, 5 %, with 2 to 8. */
+enum { SQUARE = 4 };
 
 struct line {
 	struct lattice_axis axis;
@@ -149,19 +148,15 @@ static void add_row(const double *from, double w, double *row, size_t count)
 static int spread_row(const struct line *l, const double *cell, double scale, int element,
 	double *restrict row)
 {
-	int x = 0;
+	size_t cells = (size_t)l->axis.cells, x = lanes_next(cell, 0, cells);
 
-	while (x < l->axis.cells && cell[x] == 0)
-		x++;
-	if (x == l->axis.cells)
+	if (x == cells)
 		return 0;
 	memset(row, 0, (size_t)l->axis.points * sizeof *row);
-	for (; x < l->axis.cells; x++) {
+	for (; x < cells; x = lanes_next(cell, x + 1, cells)) {
 		const double *w = element ? l->spread[x] : l->gather[x];
 		double value = scale * cell[x], *to = row + l->start[x];
 
-		if (value == 0)
-			continue;
 		for (int i = 0; i < ORDER; i++)
 			to[i] += value * w[i];
 	}
@@ -291,28 +286,56 @@ static double largest_weight(const struct line *l)
 	return most;
 }
 
+/* The largest equivalent stress of numbers up to these: a norm is largest in a corner. */
+static double largest_size(const struct stress_want *want, const double *most)
+{
+	double size = 0;
+
+	for (int signs = 0; signs < 1 << (want->numbers - 1); signs++) {
+		double number[STRESS_NUMBERS] = { 0 };
+
+		for (int c = 0; c < want->numbers; c++)
+			number[c] = signs >> c & 1 ? -most[c] : most[c];
+		size = fmax(size, want->size(want->context, number));
+	}
+	return size;
+}
+
+/* The largest size of one number of the points [begin, end) in each square of a row;
+ * step: between squares. */
+static void take_most(const double *row, int begin, int end, double *most, size_t step)
+{
+	for (int x = begin; x < end; x++) {
+		double size = fabs(row[x]), *to = &most[(size_t)(x / SQUARE) * step];
+
+		*to = size > *to ? size : *to;
+	}
+}
+
 /* The equivalent stress of a weighted sum is at most the sum of the weights' sizes times
  * the largest one. */
-static void find_most(struct lattice_gather *g, const struct stress_want *points)
+static enum num_status find_most(
+	struct lattice_gather *g, const struct stress_want *points, size_t squares)
 {
 	const struct stress_want *want = g->want;
-	size_t nx = (size_t)g->l->x.axis.points;
+	size_t nx = (size_t)g->l->x.axis.points, numbers = (size_t)want->numbers;
 	double weight = largest_weight(&g->l->x) * largest_weight(&g->l->y);
+	double *most = calloc(squares * numbers, sizeof *most);
 
+	if (!most)
+		return NUM_MEMORY;
 	for (size_t k = 0; k < points->count; k++) {
 		const struct stress_span *s = &points->span[k];
-		double *most = g->most + (size_t)s->y / SQUARE * g->squares;
+		size_t first = (size_t)s->y / SQUARE * g->squares;
 
-		for (int x = s->begin; x < s->end; x++) {
-			double number[STRESS_NUMBERS] = { 0 }, size;
-
-			for (int c = 0; c < want->numbers; c++)
-				number[c] = g->field[c][(size_t)s->y * nx + (size_t)x];
-			size = weight * want->size(want->context, number);
-			if (size > most[x / SQUARE])
-				most[x / SQUARE] = size;
-		}
+		for (size_t c = 0; c < numbers; c++)
+			take_most(g->field[c] + (size_t)s->y * nx, s->begin, s->end,
+				most + first * numbers + c, numbers);
 	}
+	for (size_t i = 0; i < squares; i++)
+		g->most[i] = weight * largest_size(want, most + i * numbers);
+	free(most);
+	return NUM_OK;
 }
 
 struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
@@ -330,14 +353,14 @@ struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const
 		  (size_t)want->numbers * (size_t)l->x.axis.cells;
 	g->scratch = malloc(g->room * (size_t)pool_threads(l->pool) * sizeof *g->scratch);
 	g->squares = ((size_t)l->x.axis.points + SQUARE - 1) / SQUARE;
-	if (want->may && points)
-		g->most = calloc(g->squares * rows, sizeof *g->most);
-	if (!g->scratch || (want->may && points && !g->most)) {
+	if (want->size && points)
+		g->most = malloc(g->squares * rows * sizeof *g->most);
+	if (!g->scratch ||
+		(want->size && points &&
+			(!g->most || find_most(g, points, g->squares * rows)))) {
 		lattice_gather_free(g);
 		return NULL;
 	}
-	if (g->most)
-		find_most(g, points);
 	return g;
 }
 
@@ -384,15 +407,13 @@ static void gather_run(const struct lattice_gather *g, const struct stress_span 
 	g->want->put(g->want->context, span, number);
 }
 
-/* The largest equivalent stress that is interpolated at the nodes of a span. */
-static double far_bound(const struct lattice_gather *g, const struct stress_span *span)
+double lattice_most(const struct lattice_gather *g, int x0, int x1, int y0, int y1)
 {
 	const struct line *lx = &g->l->x, *ly = &g->l->y;
-	int begin = span->begin - g->x0, end = span->end - g->x0, y = span->y - g->y0;
-	size_t left = (size_t)lx->start[begin] / SQUARE,
-	       right = (size_t)(lx->start[end - 1] + ORDER - 1) / SQUARE,
-	       low = (size_t)ly->start[y] / SQUARE,
-	       high = (size_t)(ly->start[y] + ORDER - 1) / SQUARE;
+	size_t left = (size_t)lx->start[x0] / SQUARE,
+	       right = (size_t)(lx->start[x1 - 1] + ORDER - 1) / SQUARE,
+	       low = (size_t)ly->start[y0] / SQUARE,
+	       high = (size_t)(ly->start[y1 - 1] + ORDER - 1) / SQUARE;
 	double most = 0;
 
 	for (size_t j = low; j <= high; j++)
@@ -402,41 +423,6 @@ static double far_bound(const struct lattice_gather *g, const struct stress_span
 			most = m > most ? m : most;
 		}
 	return most;
-}
-
-static int may_be_wanted(const struct lattice_gather *g, const struct stress_span *piece,
-	const struct stress_part *part)
-{
-	const double *near[STRESS_NUMBERS] = { NULL };
-
-	for (int c = 0; c < g->want->numbers; c++)
-		near[c] = part_at(part, c, piece->begin - g->x0, piece->y - g->y0);
-	return g->want->may(g->want->context, piece, near, far_bound(g, piece));
-}
-
-/* The same, but for pieces that bounds exclude. */
-static void gather_span(const struct lattice_gather *g, const struct stress_span *span,
-	const struct stress_part *part, int worker)
-{
-	struct stress_span run = *span, piece = *span;
-
-	if (!g->most) {
-		gather_run(g, span, part, worker);
-		return;
-	}
-	for (run.end = run.begin; piece.begin < span->end; piece.begin = piece.end) {
-		piece.end =
-			piece.begin + PIECE < span->end ? piece.begin + PIECE : span->end;
-		if (may_be_wanted(g, &piece, part)) {
-			run.end = piece.end;
-			continue;
-		}
-		if (run.end > run.begin)
-			gather_run(g, &run, part, worker);
-		run.begin = run.end = piece.end;
-	}
-	if (run.end > run.begin)
-		gather_run(g, &run, part, worker);
 }
 
 void lattice_gather_part(
@@ -452,7 +438,7 @@ void lattice_gather_part(
 		s.begin = s.begin > left ? s.begin : left;
 		s.end = s.end < right ? s.end : right;
 		if (s.begin < s.end)
-			gather_span(g, &s, part, worker);
+			gather_run(g, &s, part, worker);
 	}
 }
 
@@ -460,7 +446,7 @@ static void gather_job(void *context, size_t job, int worker)
 {
 	const struct lattice_gather *g = context;
 
-	gather_span(g, &g->want->span[job], NULL, worker);
+	gather_run(g, &g->want->span[job], NULL, worker);
 }
 
 enum num_status lattice_gather(const struct lattice *l, double *const *field, int x0,

@@ -57,6 +57,9 @@ struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const
 	const struct stress_want *points); /* NULL: no memory */
 void lattice_gather_part(
 	const struct lattice_gather *g, const struct stress_part *part, int worker);
+/* The largest equivalent stress that is interpolated at the cells [x0, x1) of the rows
+ * [y0, y1), for a request with a limit. */
+double lattice_most(const struct lattice_gather *g, int x0, int x1, int y0, int y1);
 void lattice_gather_free(struct lattice_gather *g);
 
 #endif

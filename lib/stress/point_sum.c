@@ -285,15 +285,15 @@ static void put_square(
 	to->y[i] = sum_y / load;
 }
 
-/* 1 if n cells of a row carry no load. */
-static int is_free(const struct point_sum *s, int x, int y, int n)
+/* The first smallest square of a row, from x on, that is loaded. */
+static int next_block(const struct point_sum *s, int y, int x)
 {
-	const double *p = s->pressure + (size_t)y * (size_t)s->par.nx + (size_t)x;
-	lanes most = lanes_all(0);
+	size_t nx = (size_t)s->par.nx, first = nx;
 
-	for (int i = 0; i < n; i += 2)
-		most = lanes_max(lanes_load(p + i, i + 1 < n ? 2 : 1), most);
-	return !(most[0] > 0) && !(most[1] > 0);
+	for (int i = y * BLOCK; i < lesser_int((y + 1) * BLOCK, s->par.ny); i++)
+		first = lesser(first, lanes_next(s->pressure + (size_t)i * nx,
+					      (size_t)x * BLOCK, first));
+	return first < nx ? (int)(first / BLOCK) : s->nx;
 }
 
 /* Lists the loaded cells of a smallest square and adds them up; returns how many cells
@@ -306,7 +306,7 @@ static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n
 	double load = 0, sum_x = 0, sum_y = 0;
 
 	for (int y = y0; y < y1; y++)
-		for (int x = is_free(s, x0, y, x1 - x0) ? x1 : x0; x < x1; x++) {
+		for (int x = x0; x < x1; x++) {
 			double p = pressure_at(s, x, y);
 
 			if (!(p > 0))
@@ -345,9 +345,12 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	for (int i = 0; i < s->tiles; i++)
 		s->tile[i].row = -1;
 	for (int y = 0; y < s->ny; y++)
-		for (int x = 0; x < s->nx; x++) {
+		for (int x = 0, next = next_block(s, y, 0); x < s->nx; x++) {
 			s->begin[block++] = n;
+			if (x < next)
+				continue;
 			n = list_cells(s, x, y, n);
+			next = next_block(s, y, x + 1);
 		}
 	s->begin[block] = n;
 	for (struct size *size = s->size; size + 1 < s->size + s->sizes; size++)

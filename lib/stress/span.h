@@ -16,16 +16,10 @@ struct stress_span {
 };
 
 /* Receives the stress components of a span or of a part of one, number[c][x - begin], in
- * any order and from any thread; the parts cover every span once, but for nodes that
- * bounds exclude. */
+ * any order and from any thread; the parts cover every span once, but for nodes that are
+ * known not to exceed a limit. */
 typedef void stress_put(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS]);
-
-/* Bounds for nodes whose stress is a sum of a near part, number[c][x - begin] (NULL: 0),
- * and of a far one of at most this equivalent stress: 1 if one of a span may be asked
- * for. Others need not be received. */
-typedef int stress_may(void *context, const struct stress_span *span,
-	const double *const near[STRESS_NUMBERS], double far);
 
 /* Equivalent stress of these numbers. */
 typedef double stress_size(void *context, const double number[STRESS_NUMBERS]);
@@ -37,8 +31,8 @@ struct stress_want {
 	size_t count;
 	int numbers;
 	stress_put *put;
-	stress_may *may; /* NULL: all nodes are received */
-	stress_size *size;
+	stress_size *size; /* NULL: all nodes are received */
+	double limit;      /* of their equivalent stress; others need not be received */
 	void *context;
 };
 

@@ -242,12 +242,10 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 	s->held_depth = INFINITY;
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
 	for (size_t y = 0; y < ny; y++)
-		for (size_t x = 0; x < nx; x++) {
-			double p = pressure[y * nx + x];
+		for (size_t x = lanes_next(pressure + y * nx, 0, nx); x < nx;
+			x = lanes_next(pressure + y * nx, x + 1, nx)) {
+			double p = pressure[y * nx + x] / unit;
 
-			if (p == 0)
-				continue;
-			p /= unit;
 			s->loaded = 1;
 			s->total += p * area * unit;
 			add_to_block(s, (int)x, (int)y, fabs(p) * area);
@@ -304,6 +302,24 @@ static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 	return sum[0] + sum[1];
 }
 
+/* Whether loads of the blocks around one may act at its nodes without a distance. */
+static int block_is_touched(const struct stress *s, int bx, int by)
+{
+	int x0 = bx * s->side - 1, x1 = x0 + s->side + 1, y0 = by * s->side - 1,
+	    y1 = y0 + s->side + 1;
+
+	for (int j = by > 0 ? by - 1 : 0; j <= by + 1 && j < s->by; j++)
+		for (int i = bx > 0 ? bx - 1 : 0; i <= bx + 1 && i < s->bx; i++) {
+			const struct block *b =
+				&s->blocks[(size_t)j * (size_t)s->bx + (size_t)i];
+
+			if (b->load > 0 && b->x1 >= x0 && b->x0 <= x1 && b->y1 >= y0 &&
+				b->y0 <= y1)
+				return 1;
+		}
+	return 0;
+}
+
 /* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
  * even if the remaining load were all in the next rows.  The block's own load, at no
  * distance, is often enough. */
@@ -313,6 +329,8 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 	double sum = 0, rest = s->load;
 
 	if (own > 0 && own * s->point > limit * (z * z))
+		return 1;
+	if (z == 0 && block_is_touched(s, bx, by))
 		return 1;
 	for (int d = 0; d < s->by; d++) {
 		double away = d * s->side * s->par.dy;
@@ -514,29 +532,6 @@ static double equivalent(void *context, const double number[STRESS_NUMBERS])
 	return ((const struct take *)context)->s->criterion->value(number);
 }
 
-/* Whether nodes may exceed the limit, by the norm of their near numbers and tractions. */
-static int may_exceed(void *context, const struct stress_span *span,
-	const double *const near[STRESS_NUMBERS], double far)
-{
-	const struct take *t = context;
-	const struct stress *s = t->s;
-	const double *p = s->given + (size_t)span->y * (size_t)s->par.nx + span->begin;
-	/* Less what rounding may add. */
-	double rest = t->limit / s->unit * (1 - 1e-9) - far, most = 0;
-	double bound = rest / s->criterion->norm, shear = s->par.mu / s->unit;
-
-	for (int x = 0; x < span->end - span->begin; x++) {
-		double xz = shear * p[x], square = 2 * xz * xz;
-
-		if (near[DEV_X])
-			square += near[DEV_X][x] * near[DEV_X][x] +
-				  near[DEV_Y][x] * near[DEV_Y][x] +
-				  2 * near[DEV_XY][x] * near[DEV_XY][x];
-		most = square > most ? square : most;
-	}
-	return !(rest > 0 && most <= bound * bound);
-}
-
 enum num_status stress_above(struct stress *s, double limit,
 	const struct stress_span *span, size_t count, struct stress_node *node,
 	size_t *found)
@@ -545,8 +540,8 @@ enum num_status stress_above(struct stress *s, double limit,
 	struct stress_want want = { .span = span,
 		.count = count,
 		.put = take_above,
-		.may = may_exceed,
 		.size = equivalent,
+		.limit = limit / s->unit,
 		.context = &t };
 	enum num_status status = count > 0 && s->loaded ? sum(s, 0, &want) : NUM_OK;
 

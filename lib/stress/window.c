@@ -20,7 +20,10 @@ enum { KEPT_POINTS = 256 * 256 };
  * are wanted.  The surrogate takes the same time within 3 % with 32 to 192 on 128 x 128
  * and 512 x 512 cells; with none it takes 9 % more where 0.3 % of 512 x 512 cells are
  * loaded.  A span costs as much as so many more nodes. */
-enum { FEW = 64, MOST_FEW = 16 * FEW, SPAN_NODES = 8 };
+enum { MOST_FEW = 16 * WINDOW_FEW, SPAN_NODES = 8 };
+
+/* Nodes that are summed together. */
+enum { TOGETHER = 4 };
 
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
 struct cut {
@@ -38,8 +41,7 @@ struct tiling {
 	double *load, *plane; /* loads; the sums of all numbers */
 	double complex *image, *product, *work;
 	double complex *kernel[STRESS_NUMBERS];
-	double *table; /* of each number, (2 reach_y + 1) rows of 2 reach_x + 1; or NULL
-			*/
+	double *table; /* of each number, 2 reach_y + 1 rows of table_width(); or NULL */
 	unsigned char *wanted;
 	double *transforms; /* of each tile */
 	int made;           /* kernels transformed */
@@ -138,40 +140,26 @@ static struct extent extent_of(const struct tiling *t, int x0, int y0)
 /* The loads of a tile, if they are few. */
 struct few {
 	int count, most; /* most + 1: there are more */
-	int x[MOST_FEW], y[MOST_FEW];
-	double load[MOST_FEW];
+	int x[MOST_FEW + 1], y[MOST_FEW + 1];
+	double load[MOST_FEW + 1];
+	ptrdiff_t at[MOST_FEW]; /* less the place of what it adds in a table */
 };
-
-static void add_few(struct few *f, int x, int y, double load)
-{
-	if (load == 0 || f->count > f->most)
-		return;
-	if (f->count < f->most) {
-		f->x[f->count] = x;
-		f->y[f->count] = y;
-		f->load[f->count] = load;
-	}
-	f->count++;
-}
 
 static void find_few(const struct tiling *t, const struct extent *e, struct few *f)
 {
 	const struct window *w = t->w;
+	size_t stop = (size_t)e->stop, begin = (size_t)e->begin;
 
 	f->count = 0;
 	for (int y = e->bottom; y < e->top && f->count <= f->most; y++) {
 		const double *row = w->load + (size_t)y * w->load_stride;
 
-		for (int x = e->begin; x < e->stop; x += 2) {
-			int n = x + 1 < e->stop ? 2 : 1;
-			lanes load = lanes_load(row + x, n);
-
-			if (load[0] == 0 && load[1] == 0)
-				continue;
-			add_few(f, x - e->left, y - e->low, w->scale * load[0]);
-			if (n == 2)
-				add_few(f, x + 1 - e->left, y - e->low,
-					w->scale * load[1]);
+		for (size_t x = lanes_next(row, begin, stop);
+			x < stop && f->count <= f->most;
+			x = lanes_next(row, x + 1, stop)) {
+			f->x[f->count] = (int)x - e->left;
+			f->y[f->count] = y - e->low;
+			f->load[f->count++] = w->scale * row[x];
 		}
 	}
 }
@@ -207,18 +195,6 @@ static void multiply(const double complex *a, const double complex *b, double co
 			lanes_complex(lanes_load(u + i, 2), lanes_load(v + i, 2)), 2);
 }
 
-/* row += w from */
-static void add_row(double *row, const double *from, double w, int count)
-{
-	int i = 0;
-
-	for (; i + 1 < count; i += 2)
-		lanes_store(
-			row + i, lanes_load(row + i, 2) + w * lanes_load(from + i, 2), 2);
-	if (i < count)
-		row[i] += w * from[i];
-}
-
 /* The next wanted nodes of a part, counted from its first; next: the first span that may
  * lie in it, then that after it.  0 if there are none. */
 static int next_run(const struct tiling *t, const struct stress_part *part,
@@ -249,50 +225,125 @@ static int most_few(const struct tiling *t, const struct stress_part *part)
 	struct stress_span run;
 
 	if (!t->w->want)
-		return FEW;
+		return t->w->few;
 	next = span_first(t->w->want, t->w->y0 + part->y0);
 	while (next_run(t, part, &next, &run))
 		nodes += run.end - run.begin + SPAN_NODES;
-	return nodes * MOST_FEW > FEW * all ? (int)(FEW * all / nodes) : MOST_FEW;
+	return nodes * MOST_FEW > t->w->few * all ? (int)(t->w->few * all / nodes)
+						  : MOST_FEW;
 }
 
-/* Adds the loads to a run of nodes, by the table of one number. */
-static void add_to_run(const struct tiling *t, const struct few *few,
-	const struct stress_span *run, const double *table, double *node)
+/* Points to a row of the table of a number: zeros on both sides, so that several nodes
+ * beside each other take what a load adds without a look at its reach. */
+static int table_width(const struct tiling *t)
 {
-	int width = 2 * t->reach_x + 1;
+	return 2 * t->reach_x + 1 + 2 * (TOGETHER - 1);
+}
 
-	memset(node + run->begin, 0, (size_t)(run->end - run->begin) * sizeof *node);
-	for (int i = 0; i < few->count; i++) {
-		int x = few->x[i] - t->x.lead, y = few->y[i] - t->y.lead;
-		int left = larger(x - t->reach_x, run->begin),
-		    right = lesser_int(x + t->reach_x + 1, run->end);
+static size_t table_size(const struct tiling *t)
+{
+	return (size_t)table_width(t) * (size_t)(2 * t->reach_y + 1);
+}
 
-		if (abs(run->y - y) > t->reach_y || left >= right)
-			continue;
-		add_row(node + left,
-			table + (run->y - y + t->reach_y) * width +
-				(left - x + t->reach_x),
-			few->load[i], right - left);
+/* A load near nodes, and what it adds to the first number of the first of them. */
+struct near {
+	const double *table;
+	double load;
+};
+
+/* Of the loads [first, end), whose rows are in reach, those that are of nodes from (x, y)
+ * on. */
+static int list_near(const struct tiling *t, const struct few *few, int first, int end,
+	int x, int y, struct near *near)
+{
+	int width = table_width(t), count = 0;
+	int left = x + t->x.lead + t->reach_x + TOGETHER - 1,
+	    low = y + t->y.lead + t->reach_y;
+	const double *table = t->table + low * width + left;
+	unsigned last = (unsigned)(width - TOGETHER);
+
+	for (int i = first; i < end; i++) {
+		/* Half of them are: a branch would often be guessed wrongly. */
+		near[count] = (struct near){ table - few->at[i], few->load[i] };
+		count += (unsigned)(left - few->x[i]) <= last;
+	}
+	return count;
+}
+
+static void put_nodes(double *node, lanes a, lanes b, int nodes)
+{
+	lanes_store(node, a, nodes > 1 ? 2 : 1);
+	if (nodes > 2)
+		lanes_store(node + 2, b, nodes > 3 ? 2 : 1);
+}
+
+/* Sums of three numbers, which the processor adds side by side: for the first nodes of
+ * those together. */
+static void add_near(const struct tiling *t, const struct near *near, int count,
+	const int c[3], double *node, int nodes)
+{
+	size_t size = table_size(t);
+	lanes a0 = lanes_all(0), a1 = a0, b0 = a0, b1 = a0, c0 = a0, c1 = a0;
+
+	for (int i = 0; i < count; i++) {
+		const double *a = near[i].table + (size_t)c[0] * size;
+		const double *b = near[i].table + (size_t)c[1] * size;
+		const double *d = near[i].table + (size_t)c[2] * size;
+		double load = near[i].load;
+
+		a0 += load * lanes_load(a, 2);
+		a1 += load * lanes_load(a + 2, 2);
+		b0 += load * lanes_load(b, 2);
+		b1 += load * lanes_load(b + 2, 2);
+		c0 += load * lanes_load(d, 2);
+		c1 += load * lanes_load(d + 2, 2);
+	}
+	put_nodes(node + (size_t)c[0] * t->room, a0, a1, nodes);
+	put_nodes(node + (size_t)c[1] * t->room, b0, b1, nodes);
+	put_nodes(node + (size_t)c[2] * t->room, c0, c1, nodes);
+}
+
+/* Adds the loads [first, end) to a run of nodes; node: its row of the first number. */
+static void add_to_run(const struct tiling *t, const struct few *few, int first, int end,
+	const struct stress_span *run, double *node)
+{
+	struct near near[MOST_FEW + 1];
+	int last = t->w->numbers;
+
+	for (int x = run->begin; x < run->end; x += TOGETHER) {
+		int count = list_near(t, few, first, end, x, run->y, near);
+
+		for (int c = 0; c < last; c += 3)
+			add_near(t, near, count,
+				(const int[]){ c, lesser_int(c + 1, last - 1),
+					lesser_int(c + 2, last - 1) },
+				node + x, lesser_int(TOGETHER, run->end - x));
 	}
 }
 
 /* Sums load by load the nodes that are wanted. */
 static void add_loads(const struct tiling *t, const struct stress_part *part,
-	const struct few *few, double *plane)
+	struct few *few, double *plane)
 {
-	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
 	size_t at = (size_t)t->y.lead * t->stride + (size_t)t->x.lead;
 	const struct stress_span *next = NULL;
 	struct stress_span run = { -1, 0, part->x1 - part->x0 };
+	int first = 0, end = 0;
 
+	for (int i = 0; i < few->count; i++)
+		few->at[i] = (ptrdiff_t)few->y[i] * table_width(t) + few->x[i];
 	if (t->w->want)
 		next = span_first(t->w->want, t->w->y0 + part->y0);
-	while (next ? next_run(t, part, &next, &run) : ++run.y < part->y1 - part->y0)
-		for (int c = 0; c < t->w->numbers; c++)
-			add_to_run(t, few, &run, t->table + (size_t)c * size,
-				plane + (size_t)c * t->room + at +
-					(size_t)run.y * t->stride);
+	while (next ? next_run(t, part, &next, &run) : ++run.y < part->y1 - part->y0) {
+		int y = run.y + t->y.lead;
+
+		while (first < few->count && few->y[first] < y - t->reach_y)
+			first++;
+		while (end < few->count && few->y[end] <= y + t->reach_y)
+			end++;
+		add_to_run(
+			t, few, first, end, &run, plane + at + (size_t)run.y * t->stride);
+	}
 }
 
 static void sum_tile(void *context, size_t tile, int worker)
@@ -421,13 +472,14 @@ static enum num_status share_memory(struct tiling *t, struct window_kept *kept)
 /* The kernel of a number from the plane that put_kernel() filled. */
 static void put_table(const struct tiling *t, double scale, double *table)
 {
-	for (int j = -t->reach_y; j <= t->reach_y; j++) {
+	for (int j = -t->reach_y; j <= t->reach_y; j++, table += table_width(t)) {
 		size_t y = j < 0 ? t->y.points - (size_t)-j : (size_t)j;
+		double *row = table + TOGETHER - 1 + t->reach_x;
 
 		for (int i = -t->reach_x; i <= t->reach_x; i++) {
 			size_t x = i < 0 ? t->x.points - (size_t)-i : (size_t)i;
 
-			*table++ = scale * t->plane[y * t->stride + x];
+			row[i] = scale * t->plane[y * t->stride + x];
 		}
 	}
 }
@@ -435,7 +487,6 @@ static void put_table(const struct tiling *t, double scale, double *table)
 static enum num_status make_kernels(struct tiling *t)
 {
 	const struct window *w = t->w;
-	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
 	struct influence *kernel = w->make(w->maker, t->reach_x, t->reach_y);
 	double points = (double)t->x.points * (double)t->y.points;
 
@@ -444,7 +495,7 @@ static enum num_status make_kernels(struct tiling *t)
 	for (int c = 0; c < w->numbers; c++) {
 		put_kernel(t, kernel, (enum stress_number)c, 1 / points);
 		if (t->table)
-			put_table(t, points, t->table + (size_t)c * size);
+			put_table(t, points, t->table + (size_t)c * table_size(t));
 		fft_plane_forward(
 			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
 	}
@@ -470,8 +521,7 @@ static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
 
 	/* By what the kernels are found: all that are alike have it. */
 	if (4 * (size_t)t->reach_x < t->x.points && 4 * (size_t)t->reach_y < t->y.points)
-		table = (size_t)t->w->numbers * (size_t)(2 * t->reach_x + 1) *
-			(size_t)(2 * t->reach_y + 1);
+		table = (size_t)t->w->numbers * table_size(t);
 	for (int i = 0; i < WINDOW_KEPT && !found; i++) {
 		struct window_spectra *q = &kept->spectra[i];
 

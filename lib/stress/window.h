@@ -22,7 +22,7 @@ typedef void window_take(void *context, const struct stress_part *part, int work
  * reach_y, in rows of i; the others follow by symmetry.  Memory to be freed, or NULL. */
 typedef struct influence *window_kernel(void *context, int reach_x, int reach_y);
 
-enum { WINDOW_NAMELESS = -1 };
+enum { WINDOW_NAMELESS = -1, WINDOW_FEW = 64 };
 
 struct window {
 	int mx, my, reach_x, reach_y;
@@ -35,6 +35,9 @@ struct window {
 	const double *load; /* times scale, rows of load_stride */
 	size_t load_stride;
 	double scale;
+	/* Loads of a tile up to which they are summed one by one if all its nodes are
+	 * wanted, and the more the fewer are. */
+	int few;
 	int numbers; /* the first so many of enum stress_number */
 	/* Nodes wanted, counted from (x0, y0); NULL: all. */
 	const struct stress_want *want;

@@ -1,4 +1,5 @@
 /* ballcal - calibrate a debris sensor by reference balls */
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -80,10 +81,15 @@ static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
 	char *path = split(text, &diameter);
-	struct table_in *t = table_open(path);
-	int more = table_next(t), ca, cv, cw;
+	struct table_in *t;
+	int more, ca, cv, cw;
 	size_t before = p->n;
 
+	/* Pulses that count twice make intervals too narrow. */
+	if (file_is_read(path))
+		die(EXIT_USAGE, "--balls %s: the same file is given twice", text);
+	t = table_open(path);
+	more = table_next(t);
 	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
 	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
 	cw = table_find(t, "verdict");

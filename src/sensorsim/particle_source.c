@@ -302,8 +302,11 @@ static int next_particle(struct source *s, struct passage *p)
 int source_next(struct source *s, struct passage *p)
 {
 	while (next_particle(s, p)) {
-		if (isnan(source_duration) ||
-			p->time[0] - sensors_half_pulse(p->velocity) < source_duration)
+		double half = sensors_half_pulse(p->velocity);
+
+		/* Those that passed both sensors before the record begins are not in it. */
+		if (fmax(p->time[0], p->time[1]) + half > 0 &&
+			(isnan(source_duration) || p->time[0] - half < source_duration))
 			return 1;
 		if (p->time[0] - sensors_half_pulse(s->slowest) >= source_duration)
 			return 0;

@@ -78,6 +78,46 @@ static void test_units(void)
 		"reading stops at the separator");
 }
 
+/* A number with a prefix is the double nearest to it, as the compiler reads it. */
+static void test_prefixes(void)
+{
+	static const struct {
+		const char *text;
+		enum unit unit;
+		double want;
+	} exact[] = {
+		{ "40um", UNIT_LENGTH, 40e-6 },
+		{ "7.8125\xc2\xb5m", UNIT_LENGTH, 7.8125e-6 },
+		{ "0.3\xce\xbcm", UNIT_LENGTH, 0.3e-6 },
+		{ "7fm", UNIT_LENGTH, 7e-15 },
+		{ "11pm", UNIT_LENGTH, 11e-12 },
+		{ "0.7nm", UNIT_LENGTH, 0.7e-9 },
+		{ "0.07mm", UNIT_LENGTH, 0.07e-3 },
+		{ "2.3cm", UNIT_LENGTH, 2.3e-2 },
+		{ "1.1km", UNIT_LENGTH, 1.1e3 },
+		{ "355.1MPa", UNIT_PRESSURE, 355.1e6 },
+		{ "1e-3GPa", UNIT_PRESSURE, 1e6 },
+		{ "0.21TPa", UNIT_PRESSURE, 0.21e12 },
+		{ "1.1E2bar", UNIT_PRESSURE, 110e5 },
+		{ "7um2", UNIT_AREA, 7e-12 },
+		{ "3um3", UNIT_VOLUME, 3e-18 },
+		{ "0.7mL", UNIT_VOLUME, 0.7e-6 },
+		{ "9L/min", UNIT_FLOW, 9e-3 / 60 },
+		{ "7%", UNIT_FRACTION, 0.07 },
+		{ "8.3g/cm3", UNIT_DENSITY, 8300 },
+	};
+	const char *end;
+	double v;
+
+	for (size_t i = 0; i < sizeof exact / sizeof *exact; i++)
+		ok(!unit_parse(exact[i].text, exact[i].unit, "", &v, &end) &&
+				v == exact[i].want,
+			"'%s' is the number nearest to it", exact[i].text);
+	ok(unit_scale("um", UNIT_LENGTH) == 1e-6 &&
+			unit_scale("um3", UNIT_VOLUME) == 1e-18,
+		"units are the numbers nearest to them");
+}
+
 static void test_number_text(void)
 {
 	static const double values[] = { 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308,
@@ -128,6 +168,7 @@ static void test_shortest(void)
 int main(void)
 {
 	test_units();
+	test_prefixes();
 	test_number_text();
 	test_shortest();
 	return tap_done();

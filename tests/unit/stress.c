@@ -3,6 +3,7 @@
 #include "stress/stress.h"
 #include "contact/solver.h"
 #include "num/philox.h"
+#include "stress/free_sum.h"
 #include "stress/influence.h"
 #include "stress/point_sum.h"
 #include "stress/stress_kernel.h"
@@ -597,6 +598,72 @@ static void test_few(int axis, double mu)
 	free(p);
 }
 
+/* Nodes received, and those of them that exceed the limit without their tractions, so
+ * that the limit is less than what they have. */
+struct received {
+	double limit;
+	long nodes, above;
+};
+
+static double size_of(void *context, const double number[STRESS_NUMBERS])
+{
+	(void)context;
+	return stress_von_mises_criterion.value(number);
+}
+
+static void count_nodes(void *context, const struct stress_span *span,
+	const double *const number[STRESS_NUMBERS])
+{
+	struct received *r = context;
+
+	r->nodes += span->end - span->begin;
+	for (int x = 0; x < span->end - span->begin; x++) {
+		const double v[STRESS_NUMBERS] = { number[DEV_X][x], number[DEV_Y][x],
+			number[DEV_XY][x] };
+
+		r->above += stress_von_mises_criterion.value(v) > r->limit;
+	}
+}
+
+/* A request with a limit receives all nodes that exceed it, and of the rest a part: the
+ * bound neglects that loads on opposite sides of a node cancel, and tractions.  Without
+ * bounds all would be received. */
+static void test_limit(int few, int axis)
+{
+	enum { SIDE = 210, CELLS = SIDE * SIDE };
+	struct influence_par par = { 1, 1, 0.3, 0.3, axis };
+	struct free_sum *s = free_sum_new(&par, SIDE, SIDE, 0, NULL);
+	double *p = calloc(CELLS, sizeof *p);
+	struct received r = { .limit = 0.25 }, all = r;
+	struct stress_span span[SIDE];
+	struct stress_want want = { .span = span,
+		.count = SIDE,
+		.numbers = DEV_XZ,
+		.put = count_nodes,
+		.context = &all };
+	const struct stress_box box = { 0, SIDE - 1, 0, SIDE - 1 };
+
+	for (int y = 0; y < SIDE; y++)
+		span[y] = (struct stress_span){ y, 0, SIDE };
+	/* Squares of four by four cells. */
+	for (int k = 0; k < few; k++)
+		for (int i = 0; i < 16; i++)
+			p[(k * 7919 + k * k * 31) % (CELLS - 4 * SIDE) + i % 4 +
+				i / 4 * SIDE] = 0.5 + 0.25 * (k % 3);
+	free_sum_load(s, p, 1, &box);
+	free_sum_at(s, 0, &want);
+	want.context = &r;
+	want.size = size_of;
+	want.limit = r.limit;
+	free_sum_at(s, 0, &want);
+	ok(all.nodes == CELLS && all.above > 16 * few / 4 && r.above == all.above &&
+			r.nodes < 5 * r.above,
+		"%d loads, axis %d: of %ld nodes above a limit %ld are among the %ld received",
+		16 * few, axis, all.above, r.above, r.nodes);
+	free_sum_free(s);
+	free(p);
+}
+
 /* On the surface the tractions are those of the load; and what is kept of one load and of
  * one part of the grid does not show in the next. */
 static void test_surface(int axis, int periodic)
@@ -782,6 +849,9 @@ int main(void)
 		test_surface(k & 1, k >> 1);
 	test_few(0, 0.3);
 	test_few(1, 0);
+	test_limit(20, 0);
+	test_limit(20, 1);
+	test_limit(100, 1);
 	test_points(1);
 	test_points(0.1);
 	test_sequence();
