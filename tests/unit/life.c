@@ -242,6 +242,17 @@ static double repair(int k, double y)
 	return k >= 50 ? y - 0.4 : y;
 }
 
+static double low_burst(int k, double y)
+{
+	return k >= 50 && k < 55 ? y - 0.4 : y;
+}
+
+/* Set back by 0.2 and, one row later, by as much again. */
+static double two_repairs(int k, double y)
+{
+	return y - (k >= 50 ? 0.2 : 0) - (k >= 51 ? 0.2 : 0);
+}
+
 /* The same under a twentieth of the noise: each step of the rate is well beyond it. */
 static double quiet_repair(int k, double y)
 {
@@ -313,6 +324,10 @@ static void test_disturbances(void)
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&
 			median_life(60, repair, 0, 0) < 85,
 		"a repair that sets the wear back by 0.4 lengthens the life");
+	near(median_life(57, low_burst, 0, 0), plain + 3, 4,
+		"five rows that lie low are no repair once they have ended");
+	near(median_life(70, two_repairs, 0, 0), median_life(70, repair, 0, 0), 4,
+		"two repairs in two rows are as good as one");
 	/* 0.33 at row 69, nine rows after the turn: 22 of 0.03 are left */
 	near(median_life(70, accelerated, 0, 0), 22, 3,
 		"a new rate that is thirty times as high is learnt in nine rows");
