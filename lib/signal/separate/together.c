@@ -226,11 +226,10 @@ static double shape_probability(const struct together *t, double x)
 	for (size_t i = 0; i < held(t->rows); i++) {
 		double here = kernel(x - t->size[i], t->width);
 
-		if (t->weak[i]) {
+		if (t->weak[i])
 			seen += here;
-			continue;
-		}
-		others += (1 - t->wrong[i]) * here;
+		else
+			others += (1 - t->wrong[i]) * here;
 		if (t->beside[i] + log(WEAK) > x)
 			weak += 1 - t->wrong[i];
 		else
