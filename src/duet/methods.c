@@ -111,7 +111,7 @@ static int is_doubtful(
 		return 0;
 	separate_noise(s, share);
 	why = doubt == SEPARATE_FOREIGN ? xprintf("%.0f of %.0f rows fit no particle",
-						  c->misfits, separate_tested(c))
+						  separate_misfits(c), separate_tested(c))
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])

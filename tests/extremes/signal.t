@@ -47,8 +47,8 @@ scene "the same channel twice (lag 0)" "20 particles" 20 0 "$(column particle fo
 awk '{ for (i = 1; i <= 2; i++) if ($i > 0.5) $i = 0.5; else if ($i < -0.5) $i = -0.5
 	print $1, $2 }' frames.txt | au 10000 2 >clipped.au
 duet clipped.au >found.tsv
-scene "clipped at half the height" "no row is called alone or overlap" 0 0 \
-	"$(column verdict found.tsv | grep -c 'alone\|overlap\|no table')"
+scene "clipped at half the height" "20 particles" 20 0 "$(score matched)"
+scene "clipped at half the height" "sizes to 1 %" 0 0.01 "$(score size_rms)"
 
 # --- scale and rate
 for unit in 1e-12 1e12; do

@@ -242,6 +242,17 @@ static double repair(int k, double y)
 	return k >= 50 ? y - 0.4 : y;
 }
 
+static double low_burst(int k, double y)
+{
+	return k >= 50 && k < 55 ? y - 0.4 : y;
+}
+
+/* Set back by 0.2 and, one row later, by as much again. */
+static double two_repairs(int k, double y)
+{
+	return y - (k >= 50 ? 0.2 : 0) - (k >= 51 ? 0.2 : 0);
+}
+
 /* The same under a twentieth of the noise: each step of the rate is well beyond it. */
 static double quiet_repair(int k, double y)
 {
@@ -264,6 +275,28 @@ static double constant(int k, double y)
 static double rounded_noise(int k, double y)
 {
 	return round(36 * (y - k / 100.0)) / 30;
+}
+
+/* Wear in few rows that becomes twenty times as fast: two readings beyond any noise must
+ * count for something, also where few rows have determined the noise. */
+static void test_few_rows(void)
+{
+	static const double y[] = { 0, 0.011, 0.032, 0.052, 0.066, 0.074, 0.098, 0.106,
+		0.12, 0.142, 0.187, 0.53, 0.87 };
+	enum { ROWS = sizeof y / sizeof *y };
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct bank *b = bank_new(&par);
+	double life[DRAWS];
+
+	for (int k = 0; k < ROWS; k++)
+		bank_add(b, k, y[k]);
+	bank_draw(b, chances, ROWS - 1, 1, life);
+	sort_numbers(life, DRAWS);
+	ok(metric_quantile(life, DRAWS, 0.05) < 1,
+		"two rows of steep wear after eleven others may go on to the end");
+	bank_free(b);
+	bank_chances_free(chances);
 }
 
 /* By the law of future changes a twentieth of such units fails within a quarter of their
@@ -313,6 +346,10 @@ static void test_disturbances(void)
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&
 			median_life(60, repair, 0, 0) < 85,
 		"a repair that sets the wear back by 0.4 lengthens the life");
+	near(median_life(57, low_burst, 0, 0), plain + 3, 4,
+		"five rows that lie low are no repair once they have ended");
+	near(median_life(70, two_repairs, 0, 0), median_life(70, repair, 0, 0), 4,
+		"two repairs in two rows are as good as one");
 	/* 0.33 at row 69, nine rows after the turn: 22 of 0.03 are left */
 	near(median_life(70, accelerated, 0, 0), 22, 3,
 		"a new rate that is thirty times as high is learnt in nine rows");
@@ -614,6 +651,7 @@ int main(void)
 	test_straight_wear();
 	test_disturbances();
 	test_no_wear();
+	test_few_rows();
 	test_noise_favours_no_bend();
 	test_bent_wear();
 	test_wander();

@@ -139,6 +139,22 @@ static void test_weak(void)
 		weak += row[i].doubted && row[i].shape > 0.9;
 	near(weak, ROWS / 8, 0, "doubted as errors of the shape of these");
 
+	/* The same in groups, each of five large rows and a small one, where of 64 rows
+	 * that stand alone one is smaller. */
+	make_rows(0.3, 0.2, 0);
+	for (int i = 0; i < ROWS; i++) {
+		row[i].group = i % 8 < 6 ? 1 + i / 8 : 100 + i;
+		row[i].time = i % 8 % 6 ? row[i - 1].time + 0.15 : 10 * i;
+		row[i].amplitude *= i % 8 == 5 ? 0.02 : i == 7 ? 0.01 : 1;
+	}
+	tested();
+	weak = 0;
+	for (int i = 5; i < ROWS; i += 8)
+		weak += row[i].doubted && row[i].shape > 0.5;
+	/* But those of nearly its size, which may be particles as well. */
+	near(weak, ROWS / 8, 3,
+		"in groups, too, if only one of those that stand alone is small");
+
 	/* Arrivals at random, one per two durations, one in four as small. */
 	make_rows(0.3, 0.2, 0);
 	for (int i = 0; i < ROWS; i++) {

@@ -128,7 +128,8 @@ static void test_recurring(void)
 }
 
 /* Heights within a tenth, either pulse first; of one pair in three the distance is 0.33
- * durations, of the others anything up to 1. */
+ * durations, of the others anything up to 1.  Every group has two pairs, three durations
+ * apart. */
 static void test_favourite(void)
 {
 	static struct evidence e[ROWS];
@@ -144,6 +145,11 @@ static void test_favourite(void)
 		e[i + 1].amplitude = 20;
 		e[i + 1].delay = e[i].delay;
 		e[i + 1].time = i % 3 ? 0.1 + 0.9 * z[1] : 0.33 + 0.01 * z[0];
+		if ((i - ALONE) % 4)
+			for (int k = i; k < i + 2; k++) {
+				e[k].group = e[i - 1].group;
+				e[k].time += 3;
+			}
 	}
 	validation_test(v, e, ROWS);
 	for (int i = ALONE; i < ROWS; i += 2) {

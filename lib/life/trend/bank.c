@@ -17,7 +17,7 @@ enum {
 	BIRTHS = 4,    /* at a time */
 	FIRST = 3,     /* observations whose median is D = 0 */
 	BREEDING = 16, /* rows before particles are drawn */
-	HELD_GOOD = 3  /* rows held back at most on the good side */
+	HELD_GOOD = 3  /* rows running on the good side that tell a repair */
 };
 
 static const double SCORED = 18; /* rows that count in full, see weigh() */
@@ -494,8 +494,7 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 {
 	(void)p;
 	(void)f;
-	return z * z >
-	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
+	return z * z > square_at(SURPRISE, b->freedom[0]) * tr->sum / freedom_of(b, tr);
 }
 
 /* Widens the variance of the level by a jump of the damage to this value. */
@@ -544,35 +543,21 @@ static void shift(struct bank *b, const struct row *r, int repaired)
 	b->counts.shifts++;
 }
 
-/* 1 if the last HELD_GOOD rows are all healthier than the row before them. */
+/* 1 if HELD_GOOD rows running are all healthier than the row before those held. */
 static int is_repaired(const struct bank *b)
 {
-	for (int k = 1; k <= HELD_GOOD; k++)
-		if (k > b->n_held || !(damage_of(b, b->held[b->n_held - k].y) < b->level))
-			return 0;
-	return 1;
+	int running = 0;
+
+	for (int k = 0; k < b->n_held && running < HELD_GOOD; k++)
+		running = damage_of(b, b->held[k].y) < b->level ? running + 1 : 0;
+	return running == HELD_GOOD;
 }
 
-static void release(struct bank *b)
+double chance_of_jump(const struct bank *b)
 {
-	int n = b->n_held;
+	double jump = damage_of(b, b->held[0].y) - b->level;
 
-	b->n_held = 0;
-	for (int i = 0; i < n; i++)
-		take(b, &b->held[i]);
-}
-
-struct bank *bank_accepting(const struct bank *b)
-{
-	size_t size = size_of_bank(&b->par, b->capacity);
-	struct bank *copy = malloc(size);
-
-	if (!copy)
-		return NULL;
-	memcpy(copy, b, size);
-	shift(copy, &copy->held[0], 0);
-	release(copy);
-	return copy;
+	return is_repaired(b) ? 1 : b->n_held / (HELD * pow(1 + jump * jump, 2));
 }
 
 /* 1 if the machine was idle in a long gap of step: running does not explain the
@@ -649,6 +634,48 @@ static void heed_rounding(struct bank *b, double y)
 	}
 }
 
+/* 1 for a row that the trends predict, and that is not nearer to those after a repair. */
+static int goes_on(const struct bank *b, const struct row *r)
+{
+	double damage = damage_of(b, r->y);
+
+	if (is_repaired(b) &&
+		2 * damage < b->level + damage_of(b, b->held[b->n_held - 1].y))
+		return 0;
+	return equals(b, r->y) ||
+	       expect(b, damage, (r->t - b->last) / b->unit, is_surprised) < 0.9;
+}
+
+static void accept_held(struct bank *b);
+
+static void consider(struct bank *b, const struct row *r)
+{
+	if (goes_on(b, r)) {
+		b->counts.outliers += (unsigned long)b->n_held;
+		b->n_held = 0;
+		take(b, r);
+		return;
+	}
+	b->held[b->n_held++] = *r;
+	if (b->n_held == HELD)
+		accept_held(b);
+}
+
+/* Takes the first of the rows held back as the level after a jump, and the others as
+ * ever, because that may not have been the last one. */
+static void accept_held(struct bank *b)
+{
+	struct row held[HELD];
+	int n = b->n_held;
+
+	memcpy(held, b->held, sizeof held);
+	shift(b, &held[0], is_repaired(b));
+	b->n_held = 0;
+	take(b, &held[0]);
+	for (int k = 1; k < n; k++)
+		consider(b, &held[k]);
+}
+
 void bank_add(struct bank *b, double t, double y)
 {
 	struct row r = { .t = t, .y = y };
@@ -672,18 +699,19 @@ void bank_add(struct bank *b, double t, double y)
 	r.t -= b->idle;
 	face_loads(b, &r);
 	leave_idle_time(b, &r);
-	if (equals(b, y) || expect(b, damage_of(b, y), (r.t - b->last) / b->unit,
-				    is_surprised) < 0.9) {
-		b->counts.outliers += (unsigned long)b->n_held;
-		b->n_held = 0;
-		take(b, &r);
-		return;
-	}
-	b->held[b->n_held++] = r;
-	if (b->n_held == HELD || is_repaired(b)) {
-		shift(b, &b->held[0], b->n_held < HELD);
-		release(b);
-	}
+	consider(b, &r);
+}
+
+struct bank *bank_accepting(const struct bank *b)
+{
+	size_t size = size_of_bank(&b->par, b->capacity);
+	struct bank *copy = malloc(size);
+
+	if (!copy)
+		return NULL;
+	memcpy(copy, b, size);
+	accept_held(copy);
+	return copy;
 }
 
 int bank_event(struct bank *b, enum bank_event event)

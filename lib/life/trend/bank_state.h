@@ -105,6 +105,9 @@ const struct bank_shape *shape_of(const struct bank *b, int i);
  * flat shape would make outliers look exact. */
 struct place place_of(const struct bank *b, int shape, double damage);
 
+/* The probability that the rows held back are the beginning of a new regime or follow a
+ * repair, see passage.h. */
+double chance_of_jump(const struct bank *b);
 /* A copy that takes the rows held back for the beginning of a new regime, free it by
  * bank_free(); NULL: no memory. */
 struct bank *bank_accepting(const struct bank *b);

@@ -314,8 +314,7 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, double now,
 	double level, double *life)
 {
-	double jump = damage_of(b, b->held[0].y) - b->level,
-	       share = b->n_held / (HELD * pow(1 + jump * jump, 2));
+	double share = chance_of_jump(b);
 	struct bank *other;
 
 	draw_share(b, c, now, level, share, 1, life);

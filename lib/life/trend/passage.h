@@ -16,7 +16,7 @@
  * probably so the more there are: this share of the draws, an eighth for each row (as
  * doc/benchmarks.md tells), is of a copy of the bank that has accepted them.  It falls
  * with the jump j to them, in units of the distance from D = 0 to the threshold, as
- * 1 / (1 + j^2)^2.
+ * 1 / (1 + j^2)^2.  After three rows running on the healthy side, a repair, all are.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);

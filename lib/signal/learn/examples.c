@@ -7,6 +7,14 @@
 #include <math.h>
 #include <string.h>
 
+/* The flags of n samples from one on, if some of them are not known; else NULL. */
+static const unsigned char *hidden_of(
+	const struct examples *ex, int c, long long from, size_t n)
+{
+	return ex->hidden[c] && memchr(ex->hidden[c] + from, 1, n) ? ex->hidden[c] + from
+								   : NULL;
+}
+
 /* Stores y1, y2[from, to) if it is among the most clearest.  loud: merits of the stored
  * ones. */
 static void offer_example(struct examples *ex, const double *y1, const double *y2,
@@ -17,13 +25,15 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 
 	if (length < 1.5 * shortest / 2)
 		return;
-	for (int c = 0; c < 2; c++)
-		if (ex->hidden[c] && memchr(ex->hidden[c] + from, 1, (size_t)(to - from)))
-			return;
 	for (long long i = from; i < to; i++)
 		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
 	/* Large amplitudes and few pulses are preferred. */
 	merit = energy * pow(shortest / length, 4);
+	/* Samples that are not known are at the peaks of large pulses: others come first.
+	 */
+	if (hidden_of(ex, 0, from, (size_t)(to - from)) ||
+		hidden_of(ex, 1, from, (size_t)(to - from)))
+		merit = -1 / merit;
 	for (at = ex->count; at > 0 && loud[at - 1] < merit; at--)
 		if (at < most) {
 			loud[at] = loud[at - 1];
@@ -109,9 +119,11 @@ static int may_go_on(struct examples *ex)
 /* The present scene for one example. */
 static const struct joint_scene *scene_of(struct examples *ex, const struct example *e)
 {
-	for (int c = 0; c < 2; c++)
+	for (int c = 0; c < 2; c++) {
 		ex->scene.tone_knot[c] = 0.5 * ex->scene.tone_hop -
 					 (double)(e->begin + (c ? ex->shift : 0));
+		ex->scene.hidden[c] = hidden_of(ex, c, e->begin, e->n);
+	}
 	return &ex->scene;
 }
 

@@ -338,7 +338,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (c->misfits > 2 && 10 * c->misfits > separate_tested(c))
+	if (separate_misfits(c) > 2 && 10 * separate_misfits(c) > separate_tested(c))
 		return SEPARATE_FOREIGN;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;

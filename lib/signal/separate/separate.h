@@ -118,6 +118,15 @@ static inline double separate_tested(const struct separate_counters *c)
 	return c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT];
 }
 
+/* Those that fit none.  A row that may be two particles is not one of them, but where
+ * most rows are doubted, the pulse is not that of the record. */
+static inline double separate_misfits(const struct separate_counters *c)
+{
+	double doubted = c->misfits + c->together;
+
+	return 2 * doubted > separate_tested(c) ? doubted : c->misfits;
+}
+
 struct separate;
 struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
 void separate_free(struct separate *s);

@@ -34,14 +34,14 @@ struct together {
 	double any[LATELY];    /* logarithms of amplitudes, of doubted rows too */
 	int alone[LATELY];     /* all of these rows */
 	double size[LATELY];   /* logarithms of amplitudes of rows not doubted */
-	int weak[LATELY];      /* beside larger pulses */
+	int weak[LATELY];      /* beside larger pulses, ... */
+	double beside[LATELY]; /* ... of which this is the logarithm of the largest */
 	int followers[LATELY]; /* NEAR to FAR behind each; -1: it is weak */
 	double wrong[LATELY], pair[LATELY];  /* probabilities */
 	double off[LATELY], off_var[LATELY]; /* of arrivals */
 	size_t rows, all;                    /* taken in so far: not doubted, and all */
 	double density;                      /* followers per duration */
 	double mean, sd, width;              /* of sizes, and of their kernel */
-	double beside;                       /* pulses nearer than this overlap */
 	double astray;              /* share of delays that are not of the flow */
 	double flow_var, least_var; /* variance of the others, and a bound of it */
 	double least;               /* rows in company that are smaller are none */
@@ -82,16 +82,17 @@ static int count_followers(const struct arrival *a, size_t i, size_t n)
 	return count;
 }
 
-/* 1 if pulse i is weak beside one of those on one side of it, step 1 or -1. */
-static int is_weak_beside(
+/* The largest pulse on one side of pulse i, step 1 or -1; 0: there is none. */
+static double largest_beside(
 	const struct arrival *a, size_t i, size_t n, double beside, int step)
 {
+	double largest = 0;
+
 	for (size_t k = i + (size_t)step;
 		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < beside;
 		k += (size_t)step)
-		if (fabs(a[i].amplitude) < WEAK * fabs(a[k].amplitude))
-			return 1;
-	return 0;
+		largest = fmax(largest, fabs(a[k].amplitude));
+	return largest;
 }
 
 static double kernel(double x, double width)
@@ -215,18 +216,28 @@ static double pair_probability(
 
 /* Probability that a weak row beside a larger one is an error of the shape of that one:
  * the share by which such rows are more frequent than particles as small are beside
- * larger ones at random.  Two standard deviations of their number are allowed for. */
-static double shape_probability(const struct together *t, double x, size_t self)
+ * larger ones at random.  What is beside other rows tells where particles as small would
+ * be weak, and those that are not weak tell how many there are.  Two standard deviations
+ * of their number are allowed for. */
+static double shape_probability(const struct together *t, double x)
 {
-	double larger = 0, seen = 0, random;
+	double weak = 1, strong = 1, seen = 0, others = unlike(t, x);
 
 	for (size_t i = 0; i < held(t->rows); i++) {
-		larger += (t->size[i] + log(WEAK) > x) * (1 - t->wrong[i]);
-		seen += t->weak[i] ? kernel(x - t->size[i], t->width) : 0;
+		double here = kernel(x - t->size[i], t->width);
+
+		if (t->weak[i]) {
+			seen += here;
+			continue;
+		}
+		others += (1 - t->wrong[i]) * here;
+		if (t->beside[i] + log(WEAK) > x)
+			weak += 1 - t->wrong[i];
+		else
+			strong += 1 - t->wrong[i];
 	}
-	random = larger * t->density * 2 * t->beside * size_density(t, x, self, 0);
-	random += 2 * sqrt(random * kernel(0, t->width));
-	return fmax(1 - random / seen, 0);
+	others += 2 * sqrt(others * kernel(0, t->width));
+	return fmax(1 - weak / strong * others / seen, 0);
 }
 
 /* The size of the smallest row that stands alone, if too many in company are smaller;
@@ -334,9 +345,8 @@ static void tell(
 
 			a[i].pair = pair_probability(t, &a[i], self);
 			a[i].shape = !a[i].alone && t->size[self] < t->least ? 1
-				     : t->weak[self]
-					     ? shape_probability(t, t->size[self], self)
-					     : 0;
+				     : t->weak[self] ? shape_probability(t, t->size[self])
+						     : 0;
 			/* Not if the delay is more like those of the flow. */
 			a[i].astray =
 				astray_odds(t, a[i].off, a[i].off_var) > 1
@@ -366,6 +376,7 @@ static void test_some(
 				t->least_var = a[i].flow_var;
 			t->off_var[at] = a[i].off_var;
 			t->weak[at] = a[i].weak;
+			t->beside[at] = log(a[i].beside);
 			t->size[at] = log(fabs(a[i].amplitude));
 		}
 	}
@@ -384,10 +395,10 @@ static void test_some(
 
 void together_test(struct together *t, double beside, struct arrival *a, size_t n)
 {
-	t->beside = beside;
 	for (size_t i = 0; i < n; i++) {
-		a[i].weak = is_weak_beside(a, i, n, beside, 1) ||
-			    is_weak_beside(a, i, n, beside, -1);
+		a[i].beside = fmax(largest_beside(a, i, n, beside, 1),
+			largest_beside(a, i, n, beside, -1));
+		a[i].weak = fabs(a[i].amplitude) < WEAK * a[i].beside;
 		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}

@@ -40,6 +40,8 @@ struct arrival {
 	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
 	 * of the flow; set by together_test(). */
 	double pair, shape, astray;
+	double beside; /* the largest pulse that it overlaps, or 0; set by together_test()
+			*/
 	int weak, alone; /* beside a larger one, and by itself; set by together_test() */
 	int doubted; /* already, and then its size does not count; or by together_test()
 		      */

@@ -204,14 +204,13 @@ static int weak_place(const struct evidence *e, size_t m, size_t i)
 		       : -1;
 }
 
-/* Class of the distance, whichever of both is first, in a group that is no longer than
- * one pulse; else -1. */
+/* Class of the distance, whichever of both is first, within a duration; else -1. */
 static int distance_of(const struct evidence *e, size_t m, size_t i)
 {
 	int place = place_of(e, m, i), after = place - PLACES / 2;
 	int k = after < 0 ? -1 - after : after;
 
-	return place < 0 || k >= CLASSES || e[m - 1].time - e[0].time >= 1 ? -1 : k;
+	return place < 0 || k >= CLASSES ? -1 : k;
 }
 
 /* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so
