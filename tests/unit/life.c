@@ -277,6 +277,28 @@ static double rounded_noise(int k, double y)
 	return round(36 * (y - k / 100.0)) / 30;
 }
 
+/* Wear in few rows that becomes twenty times as fast: two readings beyond any noise must
+ * count for something, also where few rows have determined the noise. */
+static void test_few_rows(void)
+{
+	static const double y[] = { 0, 0.011, 0.032, 0.052, 0.066, 0.074, 0.098, 0.106,
+		0.12, 0.142, 0.187, 0.53, 0.87 };
+	enum { ROWS = sizeof y / sizeof *y };
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct bank *b = bank_new(&par);
+	double life[DRAWS];
+
+	for (int k = 0; k < ROWS; k++)
+		bank_add(b, k, y[k]);
+	bank_draw(b, chances, ROWS - 1, 1, life);
+	sort_numbers(life, DRAWS);
+	ok(metric_quantile(life, DRAWS, 0.05) < 1,
+		"two rows of steep wear after eleven others may go on to the end");
+	bank_free(b);
+	bank_chances_free(chances);
+}
+
 /* By the law of future changes a twentieth of such units fails within a quarter of their
  * age or so; what readings do not say must not make it more. */
 static void test_no_wear(void)
@@ -629,6 +651,7 @@ int main(void)
 	test_straight_wear();
 	test_disturbances();
 	test_no_wear();
+	test_few_rows();
 	test_noise_favours_no_bend();
 	test_bent_wear();
 	test_wander();

@@ -494,8 +494,7 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 {
 	(void)p;
 	(void)f;
-	return z * z >
-	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
+	return z * z > square_at(SURPRISE, b->freedom[0]) * tr->sum / freedom_of(b, tr);
 }
 
 /* Widens the variance of the level by a jump of the damage to this value. */
