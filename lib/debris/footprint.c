@@ -15,6 +15,10 @@
  * that lose 9900 columns 2.2, 1.2 and 1.0 %. */
 enum { LEAST = 4, SHARE = 250 };
 
+/* Reserve above which every depth is looked at.  The volumes of 441 surfaces have rms
+ * errors of .74, .74 and .81 % with 0, .8 and .9, and of 1.8 % with every other depth. */
+static const double NEARLY = 0.8;
+
 struct footprints {
 	struct stress_par par;
 	struct stress_node *node, *spare; /* failing cells, row by row */
@@ -224,25 +228,39 @@ static void turn_rows(const struct footprints *f, size_t *cell, size_t n)
 	}
 }
 
+static double reserve_below(const struct footprints *f, struct stress_node n, int k)
+{
+	return reserve(f->yield, point_sum_at(f->below, n.at, k));
+}
+
+/* Takes the reserve at the next depth; where it has passed 1 since the one before, or <
+ * 0.
+ */
+static double next_depth(struct reserve *r, double z, double g)
+{
+	*r = (struct reserve){ r->depths < 3 ? r->depths + 1 : 3, { z, r->z[0], r->z[1] },
+		{ g, r->g[0], r->g[1] } };
+	return g > 1 ? reserve_crossing(r) : reserve_dip(r);
+}
+
 /* The first depth at which the stress below a cell is the yield stress.  From the surface
  * down: below a film that fails there may be material that holds, above more that fails.
+ * Every other depth is left out where the reserve is far below 1 before and after it.
  * nan: deeper than allowed. */
 static double depth_below(const struct footprints *f, struct stress_node n)
 {
 	struct reserve r = { 1, { 0 }, { reserve(f->yield, n.value) } };
 
-	for (int k = 0; k < f->deepest; k++) {
-		double dip;
+	for (int k = 0; k < f->deepest; k += 2) {
+		double g = reserve_below(f, n, k), z = -1;
 
-		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,
-			{ point_sum_depth(f->below, k), r.z[0], r.z[1] },
-			{ reserve(f->yield, point_sum_at(f->below, n.at, k)), r.g[0],
-				r.g[1] } };
-		if (r.g[0] > 1)
-			return reserve_crossing(&r);
-		dip = reserve_dip(&r);
-		if (dip >= 0)
-			return dip;
+		if (k > 0 && fmax(g, r.g[0]) > NEARLY)
+			z = next_depth(&r, point_sum_depth(f->below, k - 1),
+				reserve_below(f, n, k - 1));
+		if (z < 0)
+			z = next_depth(&r, point_sum_depth(f->below, k), g);
+		if (z >= 0)
+			return z;
 	}
 	return NAN;
 }
@@ -252,7 +270,11 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 };
 	double part = fmax(sqrt(n), SHARE * n / (double)f->nodes);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
+	/* The same place in every region would be deeper, or less deep, than others: the
+	 * multiples of the golden ratio fill [0, 1) evenly. */
+	double start = (double)(r - f->list) * 0.6180339887498949;
 
+	start -= floor(start);
 	turn_rows(f, cell, r->cells);
 	for (size_t i = 0; i < m; i++) {
 		double bend;
@@ -260,7 +282,7 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 		depth[2] = depth[1];
 		depth[1] = depth[0];
 		depth[0] = depth_below(
-			f, f->node[cell[(size_t)(((double)i + 0.5) * n / (double)m)]]);
+			f, f->node[cell[(size_t)(((double)i + start) * n / (double)m)]]);
 		bend = depth[0] - 2 * depth[1] + depth[2];
 		sum += depth[0];
 		squares += i > 1 ? bend * bend : 0;

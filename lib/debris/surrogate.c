@@ -15,8 +15,10 @@ const char *const surrogate_property_names[] = { "flow", "lay", "oblique", "fric
 enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
 
-/* Of the logarithm of a volume: that of direct sums that are right to 1 % (point_sum.h).
- */
+/* Of the logarithm of a volume.  Most volumes are right to .001, some hundredths are off
+ * by more than .01, and which are follows from no property of a region: with .003 in
+ * place of .01 intervals of 90 % hold 133 in place of 151 of 160 surfaces that are
+ * rougher than those of the fit, and 80 in place of 83 of 90 like them. */
 static const double SMALLEST = 0.01;
 
 static int class_of(size_t cells)
@@ -104,16 +106,19 @@ static int keep_scores(double *all, size_t n, double *kept)
 	return most;
 }
 
-/* Conformal bounds with equal tails: the k-th score from either end, k = floor((1 -
- * level) / 2 (n + 1)). */
+/* Conformal bounds: the k-th largest size of a score, k = floor((1 - level) (n + 1)).
+ * Tails of their own would each follow from half as many scores: of 95 other surfaces the
+ * intervals of 90 % then hold 77, and these 84, at 95 % of the width. */
 static int bounds(const double *score, int n, double level, double *low, double *high)
 {
-	int k = (int)floor(0.5 * (1 - level) * (n + 1) + 1e-9);
+	int k = (int)floor((1 - level) * (n + 1) + 1e-9), i = 0, j = n - 1;
 
 	if (k < 1)
 		return 0;
-	*low = score[k - 1];
-	*high = score[n - k];
+	for (*high = INFINITY; k > 0 && i <= j; k--)
+		*high = fabs(score[i]) > fabs(score[j]) ? fabs(score[i++])
+							: fabs(score[j--]);
+	*low = -*high;
 	return 1;
 }
 

@@ -179,18 +179,33 @@ static enum num_status narrow_piece(
 	return NUM_OK;
 }
 
-static enum num_status narrow_span(
-	struct narrowing *w, const struct stress_span *s, const double *rest)
+static enum num_status narrow_span(struct narrowing *w, const struct stress_span *s)
 {
 	const struct narrow *n = w->n;
-	int begin = s->begin - n->x0, stop = s->end - n->x0;
+	int begin = s->begin - n->x0, stop = s->end - n->x0, y = s->y - n->y0;
+	size_t row = (size_t)(y / SQUARE) * (size_t)w->nx;
 
 	for (int end; begin < stop; begin = end) {
 		end = lesser_int(stop, (begin / SQUARE + 1) * SQUARE);
-		if (narrow_piece(w, s->y - n->y0, begin, end, rest[begin / SQUARE]))
+		if (narrow_piece(
+			    w, y, begin, end, w->ring[row + (size_t)(begin / SQUARE)]))
 			return NUM_MEMORY;
 	}
 	return NUM_OK;
+}
+
+/* Turns the bounds for loads that are not close into what the others may add at most. */
+static void find_rest(struct narrowing *w, int j, int y0, int y1)
+{
+	const struct narrow *n = w->n;
+
+	for (int i = 0; i < w->nx; i++) {
+		double *ring = &w->ring[j * w->nx + i];
+
+		*ring = n->limit * (1 - ROUNDING) - *ring -
+			lattice_most(n->far, i * SQUARE,
+				lesser_int((i + 1) * SQUARE, n->wx), y0, y1);
+	}
 }
 
 static enum num_status narrow_rows(
@@ -201,17 +216,13 @@ static enum num_status narrow_rows(
 
 	for (int j = 0; j < w->ny; j++) {
 		int y0 = j * SQUARE, y1 = lesser_int(y0 + SQUARE, n->wy);
-		double *rest = w->ring + (size_t)j * (size_t)w->nx;
 
 		if (at == count || from[at].y - n->y0 >= y1)
 			continue;
 		add_close(w, y0, y1);
-		for (int i = 0; i < w->nx; i++)
-			rest[i] = n->limit * (1 - ROUNDING) - rest[i] -
-				  lattice_most(n->far, i * SQUARE,
-					  lesser_int((i + 1) * SQUARE, n->wx), y0, y1);
+		find_rest(w, j, y0, y1);
 		for (; at < count && from[at].y - n->y0 < y1; at++)
-			if (narrow_span(w, &from[at], rest))
+			if (narrow_span(w, &from[at]))
 				return NUM_MEMORY;
 	}
 	return NUM_OK;

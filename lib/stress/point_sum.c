@@ -23,7 +23,7 @@ enum {
  * points.  Right below it a square must be farther than beside it, since the spread of
  * its load then only lowers the stress.  Volumes of 441 surfaces have rms errors of 2.3
  * and 1.9 % with 1 and 1.5; with 2 a sum takes a third longer. */
-static const double FAR = 1.5;
+static const double FAR = 2.5;
 /* From the nearest edge of a tile, whose cells are on average half its side farther away;
  * DEEP_FAR: at depths that are not SHALLOW.  On tiles of 8 cells volumes of 88 surfaces
  * have rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75, 1, 1.25 and 1.5; the surrogate
@@ -38,7 +38,7 @@ static const double NEAR = 6;
  * particles of 1536 x 1536 cells differs by .06, .025 and .014 % with 6, 8 and 12 from
  * that with 20. */
 static const double FLAT = 8;
-/* First depth, in cells; each is twice the one before. */
+/* First depth, in cells; each is sqrt(2) times the one before, as those of wear.c. */
 static const double SHALLOWEST = 0.125;
 
 /* What belongs to four loads.  Single precision is enough beside the error of squares and
@@ -140,8 +140,8 @@ struct point_sum {
 	struct loads *loads; /* of the lists of all tiles */
 	struct block *block; /* of all tiles */
 	/* Stress by a cell at each depth, next to it or on it. */
-	struct effect effect[SHALLOW][OFFSETS];
-	int known[SHALLOW];
+	struct effect effect[2 * SHALLOW][OFFSETS];
+	int known[2 * SHALLOW];
 	struct point point;
 };
 
@@ -152,7 +152,13 @@ static int halves(int n)
 
 static double depth_of(int k)
 {
-	return SHALLOWEST * (double)(1L << k);
+	return SHALLOWEST * exp2(0.5 * k);
+}
+
+/* Two depths share what is summed from squares, and how. */
+static int level_of(int k)
+{
+	return (k + 1) / 2;
 }
 
 /* Squares of a size but the smallest along an axis that may not be far from a tile: those
@@ -249,7 +255,7 @@ double point_sum_depth(const struct point_sum *s, int k)
 
 int point_sum_above(const struct point_sum *s, double z)
 {
-	double k = log2(z / point_sum_depth(s, 0));
+	double k = 2 * log2(z / point_sum_depth(s, 0));
 
 	return k > 0 ? (int)k : 0;
 }
@@ -613,14 +619,16 @@ static void sum_point(struct point_sum *s, int k, float number[4 * FOURS])
 	struct sums t = { .xx = all_four(0) };
 	struct effect e = { .number = { all_four(0) } };
 	float z = (float)depth_of(k);
+	int level = level_of(k);
 
-	for (int i = 0; i <= k && i <= SHALLOW; i++)
+	for (int i = 0; i <= level && i <= SHALLOW; i++)
 		add_list(s, &at->tile->far[i], at->u, at->v, z, &t);
-	if (at->deep || k >= at->flat_points)
+	if (at->deep || level >= at->flat_points)
 		add_list(s, &at->points, 0, 0, z, &t);
 	if (!at->deep) {
 		const struct effect *effect = effects_at(s, k);
-		const struct sums *on = &at->flat[k].on, *rise = &at->flat[k].rise;
+		const struct sums *on = &at->flat[level].on,
+				  *rise = &at->flat[level].rise;
 
 		t.xx += on->xx + z * rise->xx;
 		t.yy += on->yy + z * rise->yy;
@@ -649,8 +657,8 @@ double point_sum_at(struct point_sum *s, size_t cell, int k)
 	double number[STRESS_DEVIATOR];
 	float sum[4 * FOURS];
 
-	if (s->point.cell != cell || s->point.deep != (k >= SHALLOW))
-		find_point(s, cell, k >= SHALLOW);
+	if (s->point.cell != cell || s->point.deep != (level_of(k) >= SHALLOW))
+		find_point(s, cell, level_of(k) >= SHALLOW);
 	sum_point(s, k, sum);
 	for (int c = 0; c < STRESS_DEVIATOR; c++)
 		number[c] = s->total * sum[c];
