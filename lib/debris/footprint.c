@@ -267,7 +267,7 @@ static double depth_below(const struct footprints *f, struct stress_node n)
 
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
-	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 };
+	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 }, first = 0;
 	double part = fmax(sqrt(n), SHARE * n / (double)f->nodes);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 	/* The same place in every region would be deeper, or less deep, than others: the
@@ -283,17 +283,22 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 		depth[1] = depth[0];
 		depth[0] = depth_below(
 			f, f->node[cell[(size_t)(((double)i + start) * n / (double)m)]]);
+		first = i == 0 ? depth[0] : first;
 		bend = depth[0] - 2 * depth[1] + depth[2];
 		sum += depth[0];
 		squares += i > 1 ? bend * bend : 0;
 	}
 	r->volume = r->area * sum / (double)m;
-	/* A mean at even distances is off by what varies from one to the next, not by a
-	 * trend: independent depths have second differences of six times their
-	 * variance. */
-	if (m < r->cells)
-		r->error = r->area * sqrt((1 - (double)m / n) * squares /
-					     (6 * (double)(m - 2) * (double)m));
+	/* A mean at even distances is off by what varies from one to the next, where
+	 * independent depths have second differences of six times their variance, and by
+	 * the trend over the distance of the start from that of the middle. */
+	if (m < r->cells) {
+		double varies = squares / (6 * (double)(m - 2) * (double)m);
+		double trend = (depth[0] - first) / (double)(m - 1);
+
+		r->error = r->area *
+			   sqrt((1 - (double)m / n) * (varies + trend * trend / 12));
+	}
 }
 
 enum num_status footprints_find(struct footprints *f, struct stress *stress,

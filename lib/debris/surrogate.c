@@ -16,10 +16,11 @@ enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
 
 /* Of the logarithm of a volume.  Most volumes are right to .001, some hundredths are off
- * by more than .01, and which are follows from no property of a region: with .003 in
- * place of .01 intervals of 90 % hold 133 in place of 151 of 160 surfaces that are
- * rougher than those of the fit, and 80 in place of 83 of 90 like them. */
-static const double SMALLEST = 0.01;
+ * by more than .01, and which are follows from no property of a region.  With this the
+ * sizes of nine in ten scores are as large where all cells are measured as where some
+ * are: with .01 intervals of 90 % hold 149 of 160 surfaces of the former kind and 61 of
+ * 80 of the latter. */
+static const double SMALLEST = 0.005;
 
 static int class_of(size_t cells)
 {

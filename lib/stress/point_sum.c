@@ -21,8 +21,8 @@ enum {
 };
 /* Sides of a square: ones farther away, over the surface or in half the depth, act as
  * points.  Right below it a square must be farther than beside it, since the spread of
- * its load then only lowers the stress.  Volumes of 441 surfaces have rms errors of 2.3
- * and 1.9 % with 1 and 1.5; with 2 a sum takes a third longer. */
+ * its load then only lowers the stress.  Of 2500 volumes one in a hundred is off by more
+ * than 3.1, 1.7, 1.3 and 1.3 % with 1.5, 2, 2.5 and 3, in the same time within 2 %. */
 static const double FAR = 2.5;
 /* From the nearest edge of a tile, whose cells are on average half its side farther away;
  * DEEP_FAR: at depths that are not SHALLOW.  On tiles of 8 cells volumes of 88 surfaces
