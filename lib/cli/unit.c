@@ -441,7 +441,7 @@ size_t number_write(double value, char text[NUMBER_TEXT])
 	if (size > 1e-280 && size < 1e280 && !(size < 1e14 && value == floor(value)))
 		d = shortest(size);
 	if (isnan(value))
-		end = (char *)memcpy(text, "nan", 3) + 3;
+		end = strcpy(text, "nan") + 3;
 	else if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value)))
 		end = write_whole((long long)value, text);
 	else if (d.count > 0)

@@ -304,7 +304,8 @@ int source_next(struct source *s, struct passage *p)
 	while (next_particle(s, p)) {
 		double half = sensors_half_pulse(p->velocity);
 
-		/* Those that passed both sensors before the record begins are not in it. */
+		/* Those that passed both sensors before the record begins are not in it.
+		 */
 		if (fmax(p->time[0], p->time[1]) + half > 0 &&
 			(isnan(source_duration) || p->time[0] - half < source_duration))
 			return 1;

@@ -31,9 +31,10 @@ odd_cells() {
 
 series 50 2 >s
 accurate "constant series" "forecast as it is" "$(last prediction s)" 2 1e-6
-# That no wear shows is no promise that none begins, and the sensor may be dead.
-accurate "constant series, threshold 3" "no crossing: 0.5 to 0.8" "$(last p_no_crossing -y 3 s)" 0.65 0.25
-accurate "constant series, threshold 3" "may begin to wear: 4 to 16" "$(last rul_q05 -y 3 s)" 10 0.6
+# That no wear shows is no promise that none begins, but a healthy unit is not near its end
+# either: the 5 % quantile is between a quarter of the age and the age.
+accurate "constant series, threshold 3" "no crossing: 0.7 to 0.95" "$(last p_no_crossing -y 3 s)" 0.825 0.15
+accurate "constant series, threshold 3" "may begin to wear: 12 to 50" "$(last rul_q05 -y 3 s)" 31 0.6
 exactly "constant series, grey model" "no crossing" 1 "$(last p_no_crossing -y 3 --model grey s)"
 series 50 '2 + 1e-12 * (t % 3)' >s
 accurate "nearly constant series (1e-12)" "forecast as it is" "$(last prediction s)" 2 1e-9

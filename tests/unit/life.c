@@ -295,6 +295,16 @@ static void test_few_rows(void)
 	sort_numbers(life, DRAWS);
 	ok(metric_quantile(life, DRAWS, 0.05) < 1,
 		"two rows of steep wear after eleven others may go on to the end");
+	/* creep in three stages whose end, at 14, is one row away */
+	bank_clear(b);
+	for (int k = 0; k < 14; k++)
+		bank_add(b, k,
+			0.25 * cbrt(k / 14.0) + 0.25 * k / 14 +
+				0.5 * expm1(k * 10 / 14.0) / expm1(10));
+	bank_draw(b, chances, 13, 1, life);
+	sort_numbers(life, DRAWS);
+	ok(metric_quantile(life, DRAWS, 0.05) < 1,
+		"a third stage of creep is seen in fourteen rows");
 	bank_free(b);
 	bank_chances_free(chances);
 }

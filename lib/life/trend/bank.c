@@ -14,10 +14,10 @@
  * series -6 and +5); CUT 2.5 and 4: +1.6 and -1.7. */
 enum {
 	PARTICLES = 52,
-	BIRTHS = 4,    /* at a time */
-	FIRST = 3,     /* observations whose median is D = 0 */
-	BREEDING = 16, /* rows before particles are drawn */
-	HELD_GOOD = 3  /* rows running on the good side that tell a repair */
+	BIRTHS = 4,   /* at a time */
+	FIRST = 3,    /* observations whose median is D = 0 */
+	BREEDING = 8, /* rows before particles are drawn */
+	HELD_GOOD = 3 /* rows running on the good side that tell a repair */
 };
 
 static const double SCORED = 18; /* rows that count in full, see weigh() */
