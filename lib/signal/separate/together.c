@@ -218,10 +218,10 @@ static double pair_probability(
  * the share by which such rows are more frequent than particles as small are beside
  * larger ones at random.  What is beside other rows tells where particles as small would
  * be weak, and those that are not weak tell how many there are.  Two standard deviations
- * of their number are allowed for. */
+ * of the difference of both numbers are allowed for. */
 static double shape_probability(const struct together *t, double x)
 {
-	double weak = 1, strong = 1, seen = 0, others = unlike(t, x);
+	double weak = 1, strong = 1, seen = 0, others = unlike(t, x), random;
 
 	for (size_t i = 0; i < held(t->rows); i++) {
 		double here = kernel(x - t->size[i], t->width);
@@ -235,8 +235,9 @@ static double shape_probability(const struct together *t, double x)
 		else
 			strong += 1 - t->wrong[i];
 	}
-	others += 2 * sqrt(others * kernel(0, t->width));
-	return fmax(1 - weak / strong * others / seen, 0);
+	random = weak / strong * others;
+	random += 2 * sqrt((1 + weak / strong) * random * kernel(0, t->width));
+	return fmax(1 - random / seen, 0);
 }
 
 /* The size of the smallest row that stands alone, if too many in company are smaller;
