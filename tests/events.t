@@ -100,6 +100,13 @@ sensorsim $half --transients 1 --seed 5 >s.au
 duet s.au >found.tsv 2>err
 like "a transient is one of the rows that may fit no particle" "$(cat err)" \
 	"^duet: s.au: [0-9]* of $(column verdict found.tsv | wc -l) rows fit no particle"
+# shellcheck disable=SC2086
+sensorsim $half --bubbles 0.5 --transients 2 --seed 4 >s.au
+duet s.au >found.tsv 2>err
+n=$(column verdict found.tsv | grep -vc bubble)
+like "a bubble is none of those rows, also where all are doubted" "$(cat err)" \
+	"^duet: s.au: $n of $n rows fit no particle"
+at_least "bubbles in that record" "$(verdicts found.tsv bubble)" 1
 
 # shellcheck disable=SC2086
 sensorsim $scene --seed 4 >s.au

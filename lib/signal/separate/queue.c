@@ -127,7 +127,10 @@ enum separate_status separate_test_rows(struct separate *s)
 		struct entry *q = &s->queue[s->tested + i];
 
 		q->evidence.doubted = e[i].doubted;
-		s->counters.misfits += e[i].doubted;
+		/* Of events, those of no name are among the rows tested. */
+		s->counters.misfits +=
+			e[i].doubted && (!verdict_is_foreign(q->row.verdict) ||
+						q->row.verdict == SEPARATE_TRANSIENT);
 		if (!e[i].doubted || q->row.verdict >= SEPARATE_UNRESOLVED)
 			continue;
 		s->counters.foreign += q->evidence.fits;
