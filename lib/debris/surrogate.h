@@ -90,8 +90,8 @@ struct surrogate_contact surrogate_contact(
 	const struct stress_par *par, const double *pressure, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
- * (as far up as down).  0 where the contact lies outside the range of the fit, a volume is not
- * known, or the level is above the highest: nothing is said then. */
+ * (as far up as down).  0 where the contact lies outside the range of the fit, a volume
+ * is not known, or the level is above the highest: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
 	size_t count, const struct surrogate_contact *contact, double level,
 	struct surrogate_guess *guess, struct surrogate_guess *total);
