@@ -148,9 +148,9 @@ static void add_close(struct narrowing *w, int y0, int y1)
 
 static enum num_status add_run(struct narrowing *w, int y, int begin, int end)
 {
-	struct stress_span *last = w->span + w->count - 1;
+	struct stress_span *last = w->count > 0 ? &w->span[w->count - 1] : NULL;
 
-	if (w->count > 0 && last->y == y && begin - last->end <= GAP) {
+	if (last && last->y == y && begin - last->end <= GAP) {
 		last->end = end;
 		return NUM_OK;
 	}
