@@ -315,7 +315,8 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	point_sum_load(f->below, pressure);
 	for (size_t i = 0; i < f->count; at += f->list[i++].cells)
 		measure(f, &f->list[i], f->cell + at);
-	qsort(f->list, f->count, sizeof *f->list, by_size);
+	if (f->count > 0) /* else there may be no list */
+		qsort(f->list, f->count, sizeof *f->list, by_size);
 	*list = f->list;
 	*count = f->count;
 	return NUM_OK;
