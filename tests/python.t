@@ -27,8 +27,8 @@ sigconvert --output text s.au >s.txt
 cat >check.py <<'E2'
 import numpy as np, wearpipe
 dx = 1e-3 / 32
-z = wearpipe.surface(32, 1 * 1e-3, sq=0.8 * 1e-6, corr=100 * 1e-6)  # as units are read
-p, result = wearpipe.press(z, dx, 50 * 1e6, 115 * 1e9)
+z = wearpipe.surface(32, 1e-3, sq=0.8e-6, corr=100e-6)
+p, result = wearpipe.press(z, dx, 50e6, 115e9)
 raw = open("c.nrrd", "rb").read()
 field = np.frombuffer(raw, "<f8", 2 * 32 * 32, raw.index(b"\n\n") + 2).reshape(32, 32, 2)
 print("heights", np.array_equal(z, field[:, :, 0]))
