@@ -17,6 +17,7 @@ typedef double lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(16))); /* -1 for yes, 0 for no */
 typedef uint64_t lane_words __attribute__((vector_size(16)));
 typedef int32_t lane_bits __attribute__((vector_size(16)));
+typedef float four __attribute__((vector_size(16))); /* in single precision */
 
 static inline lanes lanes_all(double x)
 {

@@ -1,4 +1,4 @@
-/* lesser.h - the lesser of two whole numbers */
+/* lesser.h - the lesser and the larger of two whole numbers */
 #ifndef NUM_LESSER_H
 #define NUM_LESSER_H
 
@@ -12,6 +12,11 @@ static inline size_t lesser(size_t a, size_t b)
 static inline int lesser_int(int a, int b)
 {
 	return a < b ? a : b;
+}
+
+static inline int larger_int(int a, int b)
+{
+	return a > b ? a : b;
 }
 
 #endif

@@ -109,11 +109,6 @@ void free_sum_load(struct free_sum *s, const double *pressure, double scale,
 	s->box = *box;
 }
 
-static int larger(int a, int b)
-{
-	return a > b ? a : b;
-}
-
 /* The cells of all loads and all nodes wanted. */
 static struct box box_of(const struct free_sum *s, const struct stress_want *want)
 {
@@ -121,9 +116,9 @@ static struct box box_of(const struct free_sum *s, const struct stress_want *wan
 
 	for (size_t i = 0; i < want->count; i++) {
 		x0 = lesser_int(x0, want->span[i].begin);
-		x1 = larger(x1, want->span[i].end - 1);
+		x1 = larger_int(x1, want->span[i].end - 1);
 		y0 = lesser_int(y0, want->span[i].y);
-		y1 = larger(y1, want->span[i].y);
+		y1 = larger_int(y1, want->span[i].y);
 	}
 	return (struct box){ x0, y0, x1 - x0 + 1, y1 - y0 + 1 };
 }
@@ -604,7 +599,7 @@ enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_wa
 		return sum_full(s, z, want, &b);
 	if (z < SMOOTH * cells * side)
 		return sum_split(s, z, want, &b);
-	while (z >= 2 * SMOOTH * cells * side && cells < larger(b.wx, b.wy))
+	while (z >= 2 * SMOOTH * cells * side && cells < larger_int(b.wx, b.wy))
 		cells *= 2;
 	return sum_coarse(s, z, cells, want, &b);
 }

@@ -33,11 +33,6 @@ struct narrowing {
 	size_t load_room, span_room, count;
 };
 
-static int larger(int a, int b)
-{
-	return a > b ? a : b;
-}
-
 static enum num_status list_loads(struct narrowing *w)
 {
 	const struct narrow *n = w->n;
@@ -64,9 +59,9 @@ static double largest(const struct narrow *n, int i, int j)
 	int width = 2 * n->reach + 1;
 	double most = 0;
 
-	for (int y = larger(-n->reach, (j - 1) * SQUARE + 1);
+	for (int y = larger_int(-n->reach, (j - 1) * SQUARE + 1);
 		y <= n->reach && y < (j + 1) * SQUARE; y++)
-		for (int x = larger(-n->reach, (i - 1) * SQUARE + 1);
+		for (int x = larger_int(-n->reach, (i - 1) * SQUARE + 1);
 			x <= n->reach && x < (i + 1) * SQUARE; x++)
 			if (abs(x) > CLOSE || abs(y) > CLOSE)
 				most = fmax(most,
@@ -90,10 +85,10 @@ static enum num_status bound_rings(struct narrowing *w)
 		for (size_t k = w->row[j * SQUARE]; k < end; k++)
 			sum[w->load[k].x / SQUARE] += w->load[k].value;
 		for (int i = 0; i < w->nx; i++) {
-			int left = larger(i - apart, 0),
+			int left = larger_int(i - apart, 0),
 			    right = lesser_int(i + apart + 1, w->nx);
 
-			for (int v = larger(j - apart, 0);
+			for (int v = larger_int(j - apart, 0);
 				sum[i] > 0 && v <= j + apart && v < w->ny; v++)
 				for (int u = left; u < right; u++)
 					w->ring[v * w->nx + u] +=
@@ -105,8 +100,6 @@ static enum num_status bound_rings(struct narrowing *w)
 	free(most);
 	return most && sum ? NUM_OK : NUM_MEMORY;
 }
-
-typedef float four __attribute__((vector_size(16)));
 
 /* to += w from */
 static void add_row(float *to, const float *from, float w, int count)
@@ -132,12 +125,13 @@ static void add_close(struct narrowing *w, int y0, int y1)
 	int width = 2 * n->reach + 1;
 
 	memset(w->close, 0, (size_t)n->wx * SQUARE * sizeof *w->close);
-	for (int y = larger(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, n->wy); y++)
+	for (int y = larger_int(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, n->wy); y++)
 		for (size_t k = w->row[y]; k < w->row[y + 1]; k++) {
-			int x = w->load[k].x, left = larger(x - CLOSE, 0),
+			int x = w->load[k].x, left = larger_int(x - CLOSE, 0),
 			    right = lesser_int(x + CLOSE + 1, n->wx);
 
-			for (int v = larger(y - CLOSE, y0); v <= y + CLOSE && v < y1; v++)
+			for (int v = larger_int(y - CLOSE, y0); v <= y + CLOSE && v < y1;
+				v++)
 				add_row(w->close + (size_t)(v - y0) * (size_t)n->wx +
 						left,
 					n->size + (v - y + n->reach) * width + left - x +

@@ -41,10 +41,9 @@ static const double FLAT = 8;
 /* First depth, in cells; each is sqrt(2) times the one before, as those of wear.c. */
 static const double SHALLOWEST = 0.125;
 
-/* What belongs to four loads.  Single precision is enough beside the error of squares and
+/* A four is of four loads.  Single precision is enough beside the error of squares and
  * points, and the surrogate takes four fifths of the time with it.  Lengths are in cells,
  * so that powers of them stay within its range. */
-typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_bits __attribute__((vector_size(16)));
 
 /* Four loads and where they are: the centroids of two by two squares of one size, or,

@@ -116,11 +116,6 @@ static void put_kernel(struct tiling *t, const struct influence *kernel,
 		}
 }
 
-static int larger(int a, int b)
-{
-	return a > b ? a : b;
-}
-
 /* The points of a plane on which loads lie that are within reach of a tile. */
 struct extent {
 	int left, low; /* of the window: the first point */
@@ -132,8 +127,8 @@ static struct extent extent_of(const struct tiling *t, int x0, int y0)
 	const struct window *w = t->w;
 	int left = x0 - t->x.lead, low = y0 - t->y.lead;
 
-	return (struct extent){ left, low, larger(left, 0),
-		lesser_int(left + (int)t->x.points, w->mx), larger(low, 0),
+	return (struct extent){ left, low, larger_int(left, 0),
+		lesser_int(left + (int)t->x.points, w->mx), larger_int(low, 0),
 		lesser_int(low + (int)t->y.points, w->my) };
 }
 
@@ -207,7 +202,7 @@ static int next_run(const struct tiling *t, const struct stress_part *part,
 	for (; *next < want->span + want->count && (*next)->y < t->w->y0 + part->y1;
 		++*next) {
 		*run = (struct stress_span){ (*next)->y - y0,
-			larger((*next)->begin - x0, 0),
+			larger_int((*next)->begin - x0, 0),
 			lesser_int((*next)->end - x0, width) };
 		if (run->begin < run->end) {
 			++*next;
