@@ -97,7 +97,7 @@ static enum num_status measure_quadrature(struct separate *s, size_t n)
 	const double *x[CHANNELS_MAX];
 
 	for (int c = 0; c < CHANNELS_MAX; c++)
-		x[c] = s->buffer[c % s->channels].x;
+		x[c] = s->buffer[c].x;
 	return quadrature_measure(&s->quadrature, x, x + 2, n);
 }
 
@@ -121,8 +121,9 @@ static enum separate_status start(struct separate *s, size_t n)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	s->quadrature = s->kept.second;
-	if (n > 0 && measure_quadrature(s, n) != NUM_OK)
+	s->quadrature =
+		s->par.kept ? s->kept.second : (struct quadrature){ .noise = { 1, 1 } };
+	if (has_quadrature(s) && n > 0 && measure_quadrature(s, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	for (int k = 0; k < s->channels; k++)
 		if (buffer_start(&s->buffer[k], c,
