@@ -33,7 +33,7 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 	 */
 	if (hidden_of(ex, 0, from, (size_t)(to - from)) ||
 		hidden_of(ex, 1, from, (size_t)(to - from)))
-		merit = -1 / merit;
+		merit = -1 / fmax(merit, 0);
 	for (at = ex->count; at > 0 && loud[at - 1] < merit; at--)
 		if (at < most) {
 			loud[at] = loud[at - 1];
