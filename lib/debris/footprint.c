@@ -233,9 +233,8 @@ static double reserve_below(const struct footprints *f, struct stress_node n, in
 	return reserve(f->yield, point_sum_at(f->below, n.at, k));
 }
 
-/* Takes the reserve at the next depth; where it has passed 1 since the one before, or <
- * 0.
- */
+/* Takes the reserve g at the next depth z.  Returns the depth at which it has passed 1
+ * since the one before, or a negative number. */
 static double next_depth(struct reserve *r, double z, double g)
 {
 	*r = (struct reserve){ r->depths < 3 ? r->depths + 1 : 3, { z, r->z[0], r->z[1] },

@@ -16,7 +16,7 @@ enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
 
 /* Of the logarithm of a volume.  Most volumes are right to .001, some hundredths are off
- * by more than .01, and which are follows from no property of a region.  With this the
+ * by more than .01, and no property of a region tells which.  With this the
  * sizes of nine in ten scores are as large where all cells are measured as where some
  * are: with .01 intervals of 90 % hold 149 of 160 surfaces of the former kind and 61 of
  * 80 of the latter. */

@@ -144,9 +144,10 @@ static double square_at(double deviate, double freedom)
 	return freedom * expm1(fmin(600, wide * wide / freedom));
 }
 
-/* Scores a reading that is equal to one before and rounded from within the cell, ends in
- * h, and returns the probability that it is new and not frozen.  The share of frozen
- * readings has Jeffreys' prior; of the last value and the farthest, each is as likely. */
+/* Scores a reading that is equal to one before, rounded from anywhere in a cell with
+ * these ends in h, and returns the probability that it is new and not frozen.  The share
+ * of frozen readings has Jeffreys' prior; of the last value and the farthest, each is as
+ * likely. */
 static double news_of(const struct bank *b, struct trend *tr, const double cell[2],
 	double f, double h, int equal)
 {
