@@ -37,6 +37,12 @@ static const double HALT = 3.5;
 static const double FINEST = 3e-4;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
+/* The correlation of an innovation with those before is summed over the last rows, their
+ * weight falling to 1 / e over this share of all: a rate that changes in cycles or steps
+ * shows in no two successive rows.  Shares of 1/5, 1/10 and 1/20 cover .881, .886 and
+ * .878 at 97 % of life, the last row alone .851 (16 kinds, 150 paths). */
+static const double RECENT = 0.1;
+
 /* Log weight of a Wiener process in a curved coordinate, over that of one in a straight
  * line: its wander looks like a bend for a while. */
 static const double BENT = -0.4;
@@ -190,10 +196,11 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
 	if (b->rows < 2) /* two rows determine the trend and leave no innovation */
 		return 0;
 	tr->lagged = (float)(tr->lagged * (keep + (1 - news) / freedom_of(b, tr)) +
-			     news * z * tr->before);
+			     news * z * tr->recent);
 	tr->sum = tr->sum * (keep + (1 - news) / freedom_of(b, tr)) + news * z * z +
 		  FINEST * FINEST;
-	tr->before += (float)(news * (z - tr->before));
+	tr->recent += (float)(news *
+			      (z - fmin(1, 1 / (RECENT * (double)b->rows)) * tr->recent));
 	return 1 - news;
 }
 

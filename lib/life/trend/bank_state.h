@@ -30,8 +30,8 @@ struct trend {
 	double onset;  /* of the growth, age */
 	float growth;  /* of the rate since then; 0: none */
 	float offset;  /* log weight of a particle when it was drawn */
-	float lagged;  /* sum of products of innovations with the ones before */
-	float before;  /* the last innovation */
+	float lagged;  /* sum of products of innovations with recent before them */
+	float recent;  /* faded sum of the last innovations */
 	unsigned char shape, kind;
 };
 

@@ -119,7 +119,7 @@ struct crossing {
 	double line[LINE]; /* now */
 	double limit;      /* h of the level to be reached */
 	double straight;   /* the distance if the rate of the damage stayed constant */
-	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
+	double variance, freedom; /* of the noise, with its correlation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
 	double regime;            /* its age */
@@ -196,8 +196,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 {
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
-	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), scale;
-	double load[RATES];
+	double scale, load[RATES];
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
@@ -210,11 +209,10 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	advance_state(2, p.line, b->at, advance_of(b, tr, ahead), 1);
 	scale_rates(2, p.line, grown(tr, b->age + ahead));
 	p.freedom = freedom_of(b, tr);
-	p.variance = tr->sum / p.freedom;
+	p.variance = (tr->sum + 2 * fmax(0, tr->lagged)) / p.freedom;
 	/* The noise is constant in D: its slope is taken half way to the level. */
 	p.wiener =
 		kinds[tr->kind].wander * p.variance * here.slope * there.slope / b->gap;
-	p.variance *= (1 + correlation) / (1 - correlation);
 	scale = b->unit / b->range * here.slope;
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
 	if (shape_of(b, tr->shape)->n > 0)
