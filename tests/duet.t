@@ -412,4 +412,20 @@ is "sections enclose the arrivals of their particles" "$(wc -l <b) $(wc -l <outs
 sigconvert -o text rig.au >rig.txt
 sigconvert --from text --columns 'channel2;channel1' rig.txt >swapped.au
 fails "swapped sensors are named" 1 'pulses reach channel 2 first' duet swapped.au
+
+# The leads of one coil exchanged.
+awk -F '\t' -v OFS='\t' '/^#/ { next } NR > 6 && !sub(/^-/, "", $3) { $3 = "-" $3 } 1' rig.txt |
+	sigconvert --from text >opposite.au
+rows() { grep -v '^#' "$1"; }
+duet rig.au >plain.tsv
+rows plain.tsv >a
+duet --instrument opposite-rig.tsv opposite.au 2>said >b.tsv
+rows b.tsv >b
+same "a sensor of opposite polarity gives the same rows" a b
+is "its polarity is said" "$(grep -c 'channel 2 have the sign opposite to those of channel 1' said)" 1
+duet --instrument rig.tsv rig.au >plain.tsv
+rows plain.tsv >a
+duet --instrument opposite-rig.tsv opposite.au >b.tsv 2>said
+rows b.tsv >b
+same "a kept instrument has the polarity" a b
 done_testing

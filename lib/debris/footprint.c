@@ -242,11 +242,17 @@ static double next_depth(struct reserve *r, double z, double g)
 	return g > 1 ? reserve_crossing(r) : reserve_dip(r);
 }
 
+/* Below a cell: the depth of the loss, and its change with a relative one of the stress.
+ */
+struct loss {
+	double depth, change;
+};
+
 /* The first depth at which the stress below a cell is the yield stress.  From the surface
  * down: below a film that fails there may be material that holds, above more that fails.
  * Every other depth is left out where the reserve is far below 1 before and after it.
  * nan: deeper than allowed. */
-static double depth_below(const struct footprints *f, struct stress_node n)
+static struct loss loss_below(const struct footprints *f, struct stress_node n)
 {
 	struct reserve r = { 1, { 0 }, { reserve(f->yield, n.value) } };
 
@@ -259,14 +265,15 @@ static double depth_below(const struct footprints *f, struct stress_node n)
 		if (z < 0)
 			z = next_depth(&r, point_sum_depth(f->below, k), g);
 		if (z >= 0)
-			return z;
+			return (struct loss){ z, 0.5 / reserve_slope(&r, z) };
 	}
-	return NAN;
+	return (struct loss){ NAN, NAN };
 }
 
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
-	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 }, first = 0;
+	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 }, first = 0,
+	       change = 0;
 	double part = fmax(sqrt(n), SHARE * n / (double)f->nodes);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 	/* The same place in every region would be deeper, or less deep, than others: the
@@ -276,18 +283,21 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	start -= floor(start);
 	turn_rows(f, cell, r->cells);
 	for (size_t i = 0; i < m; i++) {
+		struct loss loss = loss_below(
+			f, f->node[cell[(size_t)(((double)i + start) * n / (double)m)]]);
 		double bend;
 
 		depth[2] = depth[1];
 		depth[1] = depth[0];
-		depth[0] = depth_below(
-			f, f->node[cell[(size_t)(((double)i + start) * n / (double)m)]]);
+		depth[0] = loss.depth;
+		change += loss.change;
 		first = i == 0 ? depth[0] : first;
 		bend = depth[0] - 2 * depth[1] + depth[2];
 		sum += depth[0];
 		squares += i > 1 ? bend * bend : 0;
 	}
 	r->volume = r->area * sum / (double)m;
+	r->change = r->area * change / (double)m;
 	/* A mean at even distances is off by what varies from one to the next, where
 	 * independent depths have second differences of six times their variance, and by
 	 * the trend over the distance of the start from that of the middle. */

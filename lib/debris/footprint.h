@@ -6,7 +6,8 @@
  * The volume of each is its area times the mean depth of the loss below some of its
  * cells, found by direct sums (point_sum.h): all cells of small regions and of surfaces
  * that lose few columns, of others every so many in the order of rows.  How much the
- * depth varies from one to the next gives the standard error.
+ * depth varies from one to the next gives the standard error.  What the sums are off
+ * by changes the volume as much as the depth of the yield stress changes with the stress.
  */
 #ifndef DEBRIS_FOOTPRINT_H
 #define DEBRIS_FOOTPRINT_H
@@ -23,8 +24,10 @@ struct footprint {
 	size_t first;           /* its first cell in order of y and x */
 	double stress;          /* the largest at the surface, Pa */
 	double volume;          /* m3; nan: deeper than debris.h allows */
-	double error; /* standard error of the volume by cells left out, m3; 0: none was
-		       */
+	double error;  /* standard error of the volume by cells left out, m3; 0: none was
+			*/
+	double change; /* of the volume by a relative one of the stress below it, to first
+			* order, m3 */
 };
 
 struct footprints;

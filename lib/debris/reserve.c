@@ -7,14 +7,30 @@ double reserve(double yield, double stress)
 	return sqrt(yield / fmax(stress, 1e-6 * yield));
 }
 
+/* Between two depths, the last one after so many. */
+static double slope_before(const struct reserve *r, int ago)
+{
+	return (r->g[ago] - r->g[ago + 1]) / (r->z[ago] - r->z[ago + 1]);
+}
+
+/* Half the second derivative. */
+static double bend_of(const struct reserve *r)
+{
+	return r->depths < 3
+		       ? 0
+		       : (slope_before(r, 0) - slope_before(r, 1)) / (r->z[0] - r->z[2]);
+}
+
+double reserve_slope(const struct reserve *r, double z)
+{
+	return slope_before(r, 0) + bend_of(r) * (2 * z - r->z[0] - r->z[1]);
+}
+
 double reserve_crossing(const struct reserve *r)
 {
 	double z1 = r->z[1], step = r->z[0] - z1;
-	double slope = (r->g[0] - r->g[1]) / step, bend = 0, b, c = r->g[1] - 1, q, s;
+	double slope = slope_before(r, 0), bend = bend_of(r), b, c = r->g[1] - 1, q, s;
 
-	if (r->depths > 2)
-		bend = (slope - (r->g[1] - r->g[2]) / (z1 - r->z[2])) /
-		       (r->z[0] - r->z[2]);
 	/* bend s^2 + b s + c = 0 has one root in [0, step]. */
 	b = slope - bend * step;
 	q = -0.5 * (b + copysign(sqrt(fmax(0, b * b - 4 * bend * c)), b));
@@ -26,14 +42,13 @@ double reserve_crossing(const struct reserve *r)
 
 double reserve_dip(const struct reserve *r)
 {
-	double z0 = r->z[2], z1 = r->z[1], z2 = r->z[0], slope, bend, b, c, most;
+	double z0 = r->z[2], z1 = r->z[1], z2 = r->z[0], bend, b, c, most;
 
 	if (r->depths < 3)
 		return -1;
-	slope = (r->g[1] - r->g[2]) / (z1 - z0);
-	bend = ((r->g[0] - r->g[1]) / (z2 - z1) - slope) / (z2 - z0);
+	bend = bend_of(r);
 	/* g0 + b s + bend s^2 - 1 */
-	b = slope - bend * (z1 - z0);
+	b = slope_before(r, 1) - bend * (z1 - z0);
 	c = r->g[2] - 1;
 	most = -b / (2 * bend);
 	if (!(bend < 0 && most > 0 && most < z2 - z0 && b * b > 4 * bend * c))

@@ -21,5 +21,7 @@ double reserve_crossing(const struct reserve *r);
 /* Where it first does on the parabola through three depths at which it is below 1; < 0:
  * nowhere. */
 double reserve_dip(const struct reserve *r);
+/* Its slope at z, on the line or parabola through the depths. */
+double reserve_slope(const struct reserve *r, double z);
 
 #endif

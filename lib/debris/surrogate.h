@@ -1,11 +1,13 @@
 /* surrogate.h - intervals that hold for volumes estimated from some columns
  *
- * The volumes and their standard errors are those of footprint.h.  What they are off by
- * besides, and the quantiles of the errors in terms of both, come from surfaces of the
- * full model.  Intervals are conformal: the stated shares of particles and surfaces not
- * used in the fit lie within them for any distribution of the errors, provided that
- * scenes are drawn like those of the fit.  There is no estimate where a property of the
- * contact is outside the range of the fit.
+ * A volume of footprint.h is off by cells left out, of which it states the standard
+ * error, and by the direct sums below the others; it states how the volume changes with
+ * the stress.  How far the sums are off, and the quantiles of the errors over both
+ * together, come from surfaces of the full model.
+ * Intervals are conformal: the stated shares of particles and surfaces not used in the
+ * fit lie within them for any distribution of the errors, provided that scenes are drawn
+ * like those of the fit.  There is no estimate where a property of the contact is outside
+ * the range of the fit.
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
@@ -18,7 +20,6 @@
 #include "debris/footprint.h"
 
 enum {
-	SURROGATE_CLASSES = 5, /* of footprints, by cells: 1, 2-3, 4-15, 16-63, more */
 	SURROGATE_SCORES = 512 /* at most of each kind; of more, as many quantiles */
 };
 
@@ -38,14 +39,15 @@ extern const char *const surrogate_property_names[SURROGATE_PROPERTIES];
 
 struct surrogate_contact {
 	double property[SURROGATE_PROPERTIES];
+	double severity; /* mean pressure, over the load, over the yield stress */
 };
 
 struct surrogate {
-	struct surrogate_contact least, most; /* of the fit */
-	/* Of the logarithm of a volume, beyond the standard error. */
-	double deviation[SURROGATE_CLASSES];
-	double shared; /* deviation that all particles of a surface have in common */
-	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
+	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
+	/* Standard deviations of the direct sums: below a particle, over the yield
+	 * stress; what those of a surface have in common, over the mean pressure. */
+	double own, shared;
+	/* Ascending: |ln(true / estimated volume)| / deviation, of the particles and
 	 * surfaces held back for it. */
 	int particles, totals;
 	double particle[SURROGATE_SCORES], total[SURROGATE_SCORES];
@@ -82,16 +84,16 @@ enum surrogate_status {
 enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
 	struct surrogate *s, struct surrogate_report *report);
 
-/* The highest level for which there is a score beyond either end. */
+/* The highest level for which there is a score. */
 double surrogate_highest_level(const struct surrogate *s);
 
 /* Hardness 0: none. */
-struct surrogate_contact surrogate_contact(
-	const struct stress_par *par, const double *pressure, double hardness);
+struct surrogate_contact surrogate_contact(const struct stress_par *par,
+	const double *pressure, double yield, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
- * (as far up as down).  0 where the contact lies outside the range of the fit, a volume
- * is not known, or the level is above the highest: nothing is said then. */
+ * (the logarithm as far up as down).  0 where the contact lies outside the range of the
+ * fit, a volume is not known, or the level is above the highest: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
 	size_t count, const struct surrogate_contact *contact, double level,
 	struct surrogate_guess *guess, struct surrogate_guess *total);

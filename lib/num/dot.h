@@ -32,32 +32,13 @@ static inline double dot_within(
 
 /* The inner products of x with three others, to the same bits, in little more than the
  * time of one: sums of several do not wait for each other. */
-static inline void dot3(
-	const double *x, const double *const y[3], size_t n, double out[3])
-{
-	const double *y0 = y[0], *y1 = y[1], *y2 = y[2];
-	lanes a0 = { 0 }, b0 = { 0 }, a1 = { 0 }, b1 = { 0 }, a2 = { 0 }, b2 = { 0 };
-	size_t fours = n - n % 4;
+void dot3(const double *x, const double *const y[3], size_t n, double out[3]);
 
-	for (size_t i = 0; i < fours; i += 4) {
-		lanes p = lanes_load(x + i, 2), q = lanes_load(x + i + 2, 2);
+/* Those of three with three others. */
+void dot9(const double *const x[3], const double *const y[3], size_t n, double out[3][3]);
 
-		a0 += p * lanes_load(y0 + i, 2);
-		b0 += q * lanes_load(y0 + i + 2, 2);
-		a1 += p * lanes_load(y1 + i, 2);
-		b1 += q * lanes_load(y1 + i + 2, 2);
-		a2 += p * lanes_load(y2 + i, 2);
-		b2 += q * lanes_load(y2 + i + 2, 2);
-	}
-	for (size_t i = fours; i < n; i++) {
-		a0[0] += x[i] * y0[i];
-		a1[0] += x[i] * y1[i];
-		a2[0] += x[i] * y2[i];
-	}
-	out[0] = (a0[0] + a0[1]) + (b0[0] + b0[1]);
-	out[1] = (a1[0] + a1[1]) + (b1[0] + b1[1]);
-	out[2] = (a2[0] + a2[1]) + (b2[0] + b2[1]);
-}
+/* y += factor x */
+void add_scaled(double *y, double factor, const double *x, size_t n);
 
 static inline double mean_of(const double *x, size_t n)
 {

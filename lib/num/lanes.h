@@ -19,6 +19,18 @@ typedef uint64_t lane_words __attribute__((vector_size(16)));
 typedef int32_t lane_bits __attribute__((vector_size(16)));
 typedef float four __attribute__((vector_size(16))); /* in single precision */
 
+/* Four doubles at a time, within functions marked LANES_CLONES: these are compiled for
+ * AVX2 too where the loader can choose, to the same bits, since AVX2 has no fused
+ * operations; elsewhere four are two pairs.  Clang gives the chosen function another
+ * name, by which other files do not find it. */
+typedef double lanes4 __attribute__((vector_size(32)));
+typedef int lanes4_int __attribute__((vector_size(16)));
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__)
+#define LANES_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define LANES_CLONES
+#endif
+
 static inline lanes lanes_all(double x)
 {
 	return (lanes){ x, x };

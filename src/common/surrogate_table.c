@@ -38,11 +38,11 @@ void surrogate_write(
 		report->rms, report->most, report->within, report->checked,
 		report->width);
 	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
-		put(t, "least", surrogate_property_names[k], s->least.property[k]);
-		put(t, "most", surrogate_property_names[k], s->most.property[k]);
+		put(t, "least", surrogate_property_names[k], s->least[k]);
+		put(t, "most", surrogate_property_names[k], s->most[k]);
 	}
-	put_numbered(t, "deviation", s->deviation, SURROGATE_CLASSES);
-	put_numbered(t, "shared", &s->shared, 1);
+	put(t, "deviation", "own", s->own);
+	put(t, "deviation", "shared", s->shared);
 	put_numbered(t, "particle", s->particle, s->particles);
 	put_numbered(t, "total", s->total, s->totals);
 	table_done(t);
@@ -52,15 +52,13 @@ void surrogate_write(
 static double *place_of(
 	const struct table_in *t, struct surrogate *s, const char *kind, const char *name)
 {
-	long number = strtol(name, NULL, 10);
-
 	for (int k = 0; k < SURROGATE_PROPERTIES; k++)
 		if (!strcmp(name, surrogate_property_names[k]) &&
 			(!strcmp(kind, "least") || !strcmp(kind, "most")))
-			return &(kind[0] == 'l' ? &s->least : &s->most)->property[k];
-	if (!strcmp(kind, "deviation") && number >= 1 && number <= SURROGATE_CLASSES)
-		return s->deviation + number - 1;
-	if (!strcmp(kind, "shared") && number == 1)
+			return &(kind[0] == 'l' ? s->least : s->most)[k];
+	if (!strcmp(kind, "deviation") && !strcmp(name, "own"))
+		return &s->own;
+	if (!strcmp(kind, "deviation") && !strcmp(name, "shared"))
 		return &s->shared;
 	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
 		return s->particle + s->particles++;
@@ -72,9 +70,10 @@ static double *place_of(
 
 static void check_scores(const char *name, const char *kind, const double *score, int n)
 {
-	for (int i = 1; i < n; i++)
-		if (score[i] < score[i - 1])
-			die(EXIT_RUN, "%s: scores of %s are not ascending", name, kind);
+	for (int i = 0; i < n; i++)
+		if (score[i] < (i > 0 ? score[i - 1] : 0))
+			die(EXIT_RUN, "%s: scores of %s are not ascending from 0 on",
+				name, kind);
 }
 
 void surrogate_read(const char *path, struct surrogate *s)
@@ -97,8 +96,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(a);
 		rows++;
 	}
-	if (rows != SURROGATE_CLASSES + 2L * SURROGATE_PROPERTIES + 1 + s->particles +
-			    s->totals)
+	if (rows != 2L * SURROGATE_PROPERTIES + 2 + s->particles + s->totals)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);

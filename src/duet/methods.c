@@ -84,6 +84,9 @@ static void report(const struct separate *s, double rate)
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
 	stats_set("calibrations", known ? known->attempts : 0);
+	if (known && known->gain < 0)
+		warn("the pulses of channel 2 have the sign opposite to those of channel 1: "
+		     "the channel is negated");
 	if (known)
 		instrument_note(known, rate / ratio);
 }

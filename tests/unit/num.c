@@ -280,6 +280,40 @@ static void test_small(void)
 	ok(parabola_top(1, 0, 1) == 0, "one that opens upwards has none");
 }
 
+/* Products of several arrays have the bits of those of two, whatever the length. */
+static void test_dots(void)
+{
+	enum { MOST = 11 };
+	double a[3][MOST], b[3][MOST];
+	const double *x[3] = { a[0], a[1], a[2] }, *y[3] = { b[0], b[1], b[2] };
+	int right = 1;
+
+	for (int u = 0; u < 3; u++)
+		for (int i = 0; i < MOST; i++) {
+			a[u][i] = sin(1 + 5 * u + 7 * i);
+			b[u][i] = exp(cos(2 + 3 * u + 11 * i));
+		}
+	for (size_t n = 0; n <= MOST; n++) {
+		double nine[3][3], three[3], sum[MOST], plain = 0;
+
+		dot9(x, y, n, nine);
+		for (int u = 0; u < 3; u++) {
+			dot3(x[u], y, n, three);
+			for (int v = 0; v < 3; v++)
+				right &= nine[u][v] == dot(x[u], y[v], n) &&
+					 three[v] == nine[u][v];
+		}
+		memcpy(sum, b[0], sizeof sum);
+		add_scaled(sum, 0.3, a[0], n);
+		for (size_t i = 0; i < MOST; i++)
+			right &= sum[i] == (i < n ? b[0][i] + 0.3 * a[0][i] : b[0][i]);
+		for (size_t i = 0; i < n; i++)
+			plain += a[1][i] * b[2][i];
+		right &= fabs(nine[1][2] - plain) <= 1e-14;
+	}
+	ok(right, "inner products of several arrays have the bits of those of two");
+}
+
 int main(void)
 {
 	test_room();
@@ -304,5 +338,6 @@ int main(void)
 		"fast sizes are powers of two times at most two of 3, 5 and 7, 3 once");
 	test_select();
 	test_small();
+	test_dots();
 	return tap_done();
 }

@@ -319,6 +319,31 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 	}
 }
 
+/* From derivatives by the arrival and by T, which grows by stretch with the arrival,
+ * those by this arrival and by the other one, with amplitude a. */
+LANES_CLONES static void turn_columns(
+	double *by_t, double *by_T, double a, double stretch, size_t n)
+{
+	lanes4 x, longer;
+	size_t k = 0;
+
+	for (; k + 4 <= n; k += 4) {
+		memcpy(&x, by_t + k, sizeof x);
+		memcpy(&longer, by_T + k, sizeof x);
+		longer *= stretch;
+		x = a * (x + longer);
+		longer *= -a;
+		memcpy(by_t + k, &x, sizeof x);
+		memcpy(by_T + k, &longer, sizeof x);
+	}
+	for (; k < n; k++) {
+		double more = by_T[k] * stretch;
+
+		by_t[k] = a * (by_t[k] + more);
+		by_T[k] = -a * more;
+	}
+}
+
 void joint_make_columns(
 	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p)
 {
@@ -335,14 +360,9 @@ void joint_make_columns(
 			col->d[2], by_t, by_T);
 		j->work += (double)col->n;
 		/* T grows with t2 and falls with t1. */
-		for (size_t k = 0; k < col->n; k++) {
-			double lengthen = by_T[k] * stretch;
-
-			by_t[k] = a * (by_t[k] + (c ? lengthen : -lengthen));
-			by_T[k] = a * (c ? -lengthen : lengthen);
-			if (c)
-				col->d[2][k] *= s->gain;
-		}
+		turn_columns(by_t, by_T, a, c ? stretch : -stretch, col->n);
+		for (size_t k = 0; c && k < col->n; k++)
+			col->d[2][k] *= s->gain;
 		for (int k = 0; k < PAR; k++)
 			joint_hide(j, c, col->first, col->n, col->d[k]);
 	}

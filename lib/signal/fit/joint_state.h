@@ -70,12 +70,6 @@ struct candidate {
 	double t, delta, a, z2;
 };
 
-static inline void add_scaled(double *y, double factor, const double *x, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		y[i] += factor * x[i];
-}
-
 static inline double clamp(double x, double lo, double hi)
 {
 	return x < lo ? lo : x > hi ? hi : x;

@@ -12,21 +12,20 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 		long first = x->first > y->first ? x->first : y->first;
 		long xend = x->first + (long)x->n, yend = y->first + (long)y->n;
 		long end = xend < yend ? xend : yend;
+		const double *xd[PAR], *yd[PAR];
+		double part[PAR][PAR];
 
 		if (end <= first)
 			continue;
 		touch = 1;
 		for (int u = 0; u < PAR; u++) {
-			const long at = first - y->first;
-			double part[PAR];
-
-			dot3(x->d[u] + (first - x->first),
-				(const double *[]){
-					y->d[0] + at, y->d[1] + at, y->d[2] + at },
-				(size_t)(end - first), part);
-			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
-				block[u][v] += part[v];
+			xd[u] = x->d[u] + (first - x->first);
+			yd[u] = y->d[u] + (first - y->first);
 		}
+		dot9(xd, yd, (size_t)(end - first), part);
+		for (int u = 0; u < PAR; u++)
+			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
+				block[u][v] += part[u][v];
 	}
 	return touch;
 }

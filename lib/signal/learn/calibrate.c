@@ -287,8 +287,8 @@ static enum separate_status try_wide(struct look *look, struct calibration *c)
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
-enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, struct calibration *c)
+static enum separate_status calibrate_as(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n };
 	enum separate_status status;
@@ -301,4 +301,36 @@ enum separate_status calibrate(const struct calibrate_par *par, const double *x1
 	c->attempts = look.attempts;
 	c->work = look.work;
 	return status;
+}
+
+/* Noise that drifts may look as if the sensors differed in polarity: pulses have to
+ * describe the record. */
+static enum separate_status calibrate_opposite(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct calibration *c)
+{
+	double *y2 = malloc(n * sizeof *y2);
+	enum separate_status status;
+
+	if (!y2)
+		return SEPARATE_MEMORY;
+	for (size_t i = 0; i < n; i++)
+		y2[i] = -x2[i];
+	status = calibrate_as(par, x1, y2, n, c);
+	free(y2);
+	c->gain = -c->gain;
+	if (status == SEPARATE_OK && !learn_describes(c)) {
+		calibration_clear(c);
+		status = SEPARATE_NO_LAG;
+	}
+	return status == SEPARATE_OK || status == SEPARATE_MEMORY ? status
+								  : SEPARATE_NO_LAG;
+}
+
+enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c)
+{
+	enum separate_status status = calibrate_as(par, x1, x2, n, c);
+
+	return status == SEPARATE_OPPOSITE ? calibrate_opposite(par, x1, x2, n, c)
+					   : status;
 }

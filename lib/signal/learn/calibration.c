@@ -56,7 +56,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 	*scene = (struct joint_scene){ .shape = c->shape,
 		.duration = c->duration,
 		.transit = c->transit,
-		.gain = c->gain * c->noise[0] / c->noise[1],
+		.gain = fabs(c->gain) * c->noise[0] / c->noise[1],
 		.delta_min = c->delta_min,
 		.delta_max = c->delta_max,
 		.threshold = c->threshold,

@@ -70,7 +70,7 @@ struct calibration {
 	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */
 	int reversed;  /* 1: that pulse with its sign changed */
 	int corrected; /* 1: shape corrected by the residual common to all pulses */
-	double duration, gain; /* as above */
+	double duration, gain; /* as above; negative: the sensors differ in polarity */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max;      /* samples around shift */
 	double threshold, threshold_near; /* thresholds of joint.h */
@@ -98,6 +98,7 @@ enum separate_status {
 	SEPARATE_SILENT_1,   /* channel 1 is constant */
 	SEPARATE_SILENT_2,
 	SEPARATE_COLOURED, /* of one attempt: the noise must be whitened first */
+	SEPARATE_OPPOSITE, /* ... or channel 2 negated: its pulses have the other sign */
 	SEPARATE_NO_LAG,   /* the channels have nothing in common */
 	SEPARATE_HARD,     /* what is learned from is described only by too many pulses */
 	SEPARATE_AT_ONCE,  /* both channels have the same at once: no particles */

@@ -360,30 +360,54 @@ static enum separate_status check_lag(const struct record *rec, const double *y1
 	return c->correlation < ALONE * peak[0] ? SEPARATE_NO_LAG : SEPARATE_OK;
 }
 
+/* OK if y2 follows y1 by a lag at which they have more in common than c has. */
+static enum separate_status follows(const struct record *rec, const double *y1,
+	const double *y2, const struct calibration *c)
+{
+	struct calibration other = *c;
+	double lag;
+
+	if (align_lag(y1, y2, rec->n, rec->n / 2, &lag, &other.correlation) != NUM_OK)
+		return SEPARATE_MEMORY; /* neither channel is zero throughout */
+	if (lag < 1 || other.correlation <= c->correlation)
+		return SEPARATE_NO_LAG;
+	other.shift = (long)floor(lag + 0.5);
+	return check_lag(rec, y1, y2, &other);
+}
+
 /* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
  * than half of the power of the channels. */
 static enum separate_status find_reverse(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
-	struct calibration back = *c;
-	double lag;
+	enum separate_status status;
 
 	if (!isnan(par->lag) || c->correlation > 0.5)
 		return SEPARATE_OK;
-	if (align_lag(rec->y2, rec->y1, rec->n, rec->n / 2, &lag, &back.correlation) !=
-		NUM_OK)
-		return SEPARATE_MEMORY; /* neither channel is zero throughout */
-	if (lag < 1 || back.correlation <= c->correlation)
-		return SEPARATE_OK;
-	back.shift = (long)floor(lag + 0.5);
-	switch (check_lag(rec, rec->y2, rec->y1, &back)) {
-	case SEPARATE_OK:
-		return SEPARATE_SWAPPED;
-	case SEPARATE_MEMORY:
-		return SEPARATE_MEMORY;
-	default:
-		return SEPARATE_OK;
-	}
+	status = follows(rec, rec->y2, rec->y1, c);
+	return status == SEPARATE_OK       ? SEPARATE_SWAPPED
+	       : status == SEPARATE_NO_LAG ? SEPARATE_OK
+					   : status;
+}
+
+static void negate(double *y, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		y[i] = -y[i];
+}
+
+/* OPPOSITE if the channels have nothing in common, but would have if one were negated. */
+static enum separate_status find_opposite(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	enum separate_status status;
+
+	if (!isnan(par->lag))
+		return SEPARATE_NO_LAG;
+	negate(rec->y2, rec->n);
+	status = follows(rec, rec->y1, rec->y2, c);
+	negate(rec->y2, rec->n);
+	return status == SEPARATE_OK ? SEPARATE_OPPOSITE : status;
 }
 
 /* Moves the second channel back by the lag. */
@@ -613,6 +637,8 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	if (status == SEPARATE_OK && !look->seen &&
 		(isnan(par->duration) || isnan(par->lag)))
 		status = check_lag(&rec, y1, y2, c);
+	if (status == SEPARATE_NO_LAG)
+		status = find_opposite(par, &rec, c);
 	if (status != SEPARATE_OK)
 		return status;
 	align(&rec, c);

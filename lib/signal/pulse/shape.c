@@ -1,6 +1,7 @@
 /* shape.c - see shape.h */
 #include "signal/pulse/shape.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -315,6 +316,56 @@ static void clear_outside(double *x, size_t begin, size_t end, size_t n)
 		x[i] = 0;
 }
 
+/* The first m of four numbers, at least one. */
+static inline void store(double *x, const lanes4 *v, size_t m)
+{
+	if (m == 4) {
+		memcpy(x, v, sizeof *v);
+		return;
+	}
+	x[0] = (*v)[0];
+	if (m > 1)
+		x[1] = (*v)[1];
+	if (m > 2)
+		x[2] = (*v)[2];
+}
+
+/* Samples begin to end of shape_sample(), all of them within the cells. */
+LANES_CLONES static void sample_inside(const struct shape *shape, double t0, double T,
+	long first, size_t begin, size_t end, double *p, double *by_t0, double *by_T)
+{
+	const double rate = 1 / (T * shape->step), start = (double)first - t0;
+	const double x0 = (start + shape->reach * T) * rate;
+	const double *c = shape->cubic;
+	const int last = shape->cells - 1;
+
+	for (size_t i = begin; i < end; i += 4) {
+		size_t m = end - i < 4 ? end - i : 4;
+		lanes4 at = (double)(long)i + (lanes4){ 0, 1, 2, 3 }, x = x0 + rate * at;
+		lanes4_int cell = __builtin_convertvector(x, lanes4_int);
+		lanes4 u = x - __builtin_convertvector(cell, lanes4), c0, c1, c2, c3, y;
+		const double *r0 = c + 4 * cell[0],
+			     *r1 = c + 4 * lesser_int(cell[1], last);
+		const double *r2 = c + 4 * lesser_int(cell[2], last);
+		const double *r3 = c + 4 * lesser_int(cell[3], last);
+
+		c0 = (lanes4){ r0[0], r1[0], r2[0], r3[0] };
+		c1 = (lanes4){ r0[1], r1[1], r2[1], r3[1] };
+		c2 = (lanes4){ r0[2], r1[2], r2[2], r3[2] };
+		c3 = (lanes4){ r0[3], r1[3], r2[3], r3[3] };
+		y = c0 + u * (c1 + u * (c2 + u * c3));
+		store(p + i, &y, m);
+		if (!by_t0 && !by_T)
+			continue;
+		y = -rate * (c1 + u * (2 * c2 + u * 3 * c3));
+		if (by_t0)
+			store(by_t0 + i, &y, m);
+		y = y * (start + at) / T;
+		if (by_T)
+			store(by_T + i, &y, m);
+	}
+}
+
 void shape_sample(const struct shape *shape, double t0, double T, long first, size_t n,
 	double *p, double *by_t0, double *by_T)
 {
@@ -329,23 +380,5 @@ void shape_sample(const struct shape *shape, double t0, double T, long first, si
 	clear_outside(p, begin, end, n);
 	clear_outside(by_t0, begin, end, n);
 	clear_outside(by_T, begin, end, n);
-	for (size_t i = begin; i < end; i += 2) {
-		int m = i + 1 < end ? 2 : 1;
-		lanes at = { (double)i, (double)(i + (size_t)m - 1) };
-		lanes x = x0 + rate * at, u = x - (lanes){ (int)x[0], (int)x[1] };
-		const double *a = shape->cubic + 4 * (int)x[0];
-		const double *b = shape->cubic + 4 * (int)x[1];
-		lanes c1 = { a[1], b[1] }, c2 = { a[2], b[2] }, c3 = { a[3], b[3] },
-		      slope;
-
-		lanes_store(
-			p + i, (lanes){ a[0], b[0] } + u * (c1 + u * (c2 + u * c3)), m);
-		if (!by_t0 && !by_T)
-			continue;
-		slope = -rate * (c1 + u * (2 * c2 + u * 3 * c3));
-		if (by_t0)
-			lanes_store(by_t0 + i, slope, m);
-		if (by_T)
-			lanes_store(by_T + i, slope * (start + at) / T, m);
-	}
+	sample_inside(shape, t0, T, first, begin, end, p, by_t0, by_T);
 }

@@ -9,6 +9,19 @@ static int components(const struct separate *s)
 	return s->channels / 2;
 }
 
+/* Sign with which samples of a sensor are separated: that of the pulses of sensor 1. */
+static double sign_of(const struct separate *s, int sensor)
+{
+	return sensor == 1 && s->calibrated && s->cal.gain < 0 ? -1 : 1;
+}
+
+void separate_align_signs(struct separate *s)
+{
+	for (int k = 1; k < s->channels && sign_of(s, 1) < 0; k += 2)
+		for (size_t i = 0; i < s->buffer[k].n; i++)
+			s->buffer[k].x[i] *= -1;
+}
+
 static struct converter *converter_of(struct separate *s, int sensor, int component)
 {
 	return &s->converter[components(s) * sensor + component];
@@ -27,18 +40,19 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 		some = n < BLOCK ? n : BLOCK;
 		for (int sensor = 0; sensor < 2; sensor++) {
 			const double *in = x + components(s) * sensor;
+			double sign = sign_of(s, sensor);
 
 			for (size_t i = 0; i < some; i++, in += s->channels) {
 				lost[i] =
 					converter_next(converter_of(s, sensor, 0), in[0]);
-				turned[0][i] = in[0];
+				turned[0][i] = sign * in[0];
 				if (!has_quadrature(s))
 					continue;
 				size_t other =
 					converter_next(converter_of(s, sensor, 1), in[1]);
 				lost[i] = other > lost[i] ? other : lost[i];
-				turned[0][i] = along * in[0] + across * in[1];
-				turned[1][i] = along * in[1] - across * in[0];
+				turned[0][i] = sign * (along * in[0] + across * in[1]);
+				turned[1][i] = sign * (along * in[1] - across * in[0]);
 			}
 			for (int k = 0; k < components(s); k++)
 				if (buffer_append(&s->buffer[sensor + 2 * k], turned[k],
@@ -54,11 +68,11 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 static int saturates(
 	struct separate *s, int sensor, size_t i, double along, double across)
 {
-	double x = s->buffer[sensor].x[i], v;
+	double sign = sign_of(s, sensor), x = sign * s->buffer[sensor].x[i], v;
 
 	if (!has_quadrature(s))
 		return converter_saturates(converter_of(s, sensor, 0), x);
-	v = s->buffer[sensor + 2].x[i];
+	v = sign * s->buffer[sensor + 2].x[i];
 	return converter_saturates(converter_of(s, sensor, 0), along * x - across * v) ||
 	       converter_saturates(converter_of(s, sensor, 1), along * v + across * x);
 }

@@ -131,7 +131,7 @@ static void walk_all(struct walk *w, struct instrument *in)
 	c->reversed = flag(w, "reversed", c->reversed);
 	c->corrected = flag(w, "corrected", c->corrected);
 	reals(w, "duration", SHAPE_SHORTEST, &c->duration, 1);
-	reals(w, "gain", DBL_MIN, &c->gain, 1);
+	reals(w, "gain", -INFINITY, &c->gain, 1);
 	reals(w, "transit", DBL_MIN, &c->transit, 1);
 	reals(w, "delta_min", -INFINITY, &c->delta_min, 1);
 	reals(w, "delta_max", -INFINITY, &c->delta_max, 1);

@@ -109,6 +109,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	double reach;
 
 	s->calibrated = 1;
+	separate_align_signs(s);
 	s->done = s->level_at = s->buffer[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->gain = s->scene.gain;

@@ -181,6 +181,9 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 enum num_status separate_append(struct separate *s, const double *x, size_t n);
 /* Hides the samples at a limit of the converter that only later samples have revealed. */
 void separate_review(struct separate *s);
+/* Negates the samples of sensor 2 if its polarity is now known to be that of sensor 1
+ * reversed; those appended later are negated as they come. */
+void separate_align_signs(struct separate *s);
 
 /* queue.c */
 
