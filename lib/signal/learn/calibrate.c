@@ -287,6 +287,7 @@ static enum separate_status try_wide(struct look *look, struct calibration *c)
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
+/* Learns from channels of equal polarity; OPPOSITE if they seem to differ. */
 static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {

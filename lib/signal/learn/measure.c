@@ -366,9 +366,11 @@ static enum separate_status follows(const struct record *rec, const double *y1,
 {
 	struct calibration other = *c;
 	double lag;
+	enum num_status status =
+		align_lag(y1, y2, rec->n, rec->n / 2, &lag, &other.correlation);
 
-	if (align_lag(y1, y2, rec->n, rec->n / 2, &lag, &other.correlation) != NUM_OK)
-		return SEPARATE_MEMORY; /* neither channel is zero throughout */
+	if (status != NUM_OK)
+		return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_NO_LAG;
 	if (lag < 1 || other.correlation <= c->correlation)
 		return SEPARATE_NO_LAG;
 	other.shift = (long)floor(lag + 0.5);
