@@ -269,6 +269,14 @@ static void scale_trend(const struct bank *b, struct trend *tr, double times)
 		priors_of(b, tr)[k] /= times * times;
 }
 
+static void begin_regime(const struct bank *b, struct trend *tr, float growth)
+{
+	tr->onset = b->age;
+	tr->growth = growth;
+	if (tr->changes < 255)
+		tr->changes++;
+}
+
 /* Makes a particle for a change of regime of its parent at the present age: its rate
  * begins to grow, or falls to any value between 0 and the one before, which has half the
  * rate for its mean and 1 / 12 of its square for its variance. */
@@ -286,8 +294,7 @@ static void beget(
 	*child = *parent;
 	memcpy(x, state_of(b, parent), size_of_state(&b->par));
 	scale_trend(b, child, falls ? 0.5 * s : s);
-	child->onset = b->age;
-	child->growth = falls ? 0 : (float)(past.growth / b->age);
+	begin_regime(b, child, falls ? 0 : (float)(past.growth / b->age));
 	if (falls)
 		x[n + n + 1] += rate * rate / 12 * freedom_of(b, parent) / parent->sum;
 }
@@ -530,8 +537,7 @@ static void renew(struct bank *b, double damage, double rate)
 		double line[LINE], square = squared_slope(place_of(b, tr->shape, damage));
 
 		scale_trend(b, tr, grown(tr, b->age));
-		tr->growth = 0;
-		tr->onset = b->age;
+		begin_regime(b, tr, 0);
 		line_at(b, tr, b->at, line);
 		state_of(b, tr)[n + n + 1] +=
 			(line[LINE_V] * line[LINE_V] + rate * rate * square) *

@@ -33,6 +33,7 @@ struct trend {
 	float lagged;  /* sum of products of innovations with recent before them */
 	float recent;  /* faded sum of the last innovations */
 	unsigned char shape, kind;
+	unsigned char changes; /* of the regime so far, 255 at most */
 };
 
 /* h and the rate at some load, as a state of its own. */

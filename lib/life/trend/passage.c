@@ -18,24 +18,23 @@ static const double NOTHING = 3e3;
 static const double UNLIKELY = 1e-3;
 
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
- * and on the paths of other units, for all of them together: hazard c, greatest age of
- * the regime as a share of that of the unit, share of falls, and median growth in units
- * of 1 / age.  A constant rate is that after the run-in.  The regime of a particle is no
- * older than it, and one that grows may still fall.  These and the three constants below
- * were chosen with the weights of the coordinates, see shapes.c; all where the rate is
- * constant, hazard and growth where it rises, WANDERING and five of the weights were
- * swept again, as doc/benchmarks.md tells.  With one other unit, hazards of 0.1, 0.3, 0.5
- * and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with a
- * CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
+ * and on the paths of other units, for all of them together: hazard c, share of falls,
+ * and median growth in units of the reciprocal of how long a regime lasts.  One that
+ * grows may still fall.  These and the three constants below were chosen with the weights
+ * of the coordinates, see shapes.c; all where the rate is constant, hazard and growth
+ * where it rises, GROWTH_SD, WANDERING and five of the weights were swept again, as
+ * doc/benchmarks.md tells.  With one other unit, hazards of 0.1, 0.3, 0.5 and 1 cover
+ * .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with a CRPS over all
+ * ages of 4.5, 4.5, 4.6 and 4.9. */
 static const struct future {
-	double hazard, age, falls, growth;
-} future[] = { { 2.5, 1, 0.24, 3.5 }, { 0.58, 1.0 / 3, 0.2, 3 }, { 0.5, 1, 0.033, 1.3 },
-	{ 0.5, 1, 0.18, 3 } };
+	double hazard, falls, growth;
+} future[] = { { 2.5, 0.24, 3.5 }, { 0.75, 0.24, 16 }, { 0.5, 0.033, 1.3 },
+	{ 0.5, 0.18, 3 } };
 
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
 static const double WANDERING = 0.4;
-static const double GROWTH_SD = 2.7; /* of its logarithm */
+static const double GROWTH_SD = 2.5; /* of its logarithm */
 /* Mean and sd of the logarithm of the factor by which a fall of the rate lengthens the
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
@@ -122,7 +121,8 @@ struct crossing {
 	double variance, freedom; /* of the noise, with its correlation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
-	double regime;            /* its age */
+	double lasts;             /* a regime of the unit, on average so far */
+	double regime;            /* age of the present one, but no more than that */
 	double stray, lean;       /* see STRAY */
 	const struct future *future;
 	double hazard;
@@ -202,7 +202,8 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)) };
 
-	p.regime = fmin(p.future->age * (b->age + ahead), b->age + ahead - tr->onset);
+	p.lasts = (b->age + ahead) / (1 + tr->changes);
+	p.regime = fmin(p.lasts, b->age + ahead - tr->onset);
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
 	line_at(b, tr, load, p.line);
@@ -234,8 +235,7 @@ static double normal_above(double m, const struct chance *c)
 }
 
 /* Time to the passage if the regime changes once more. */
-static double change(
-	const struct crossing *p, double time, double age, const struct chance *c)
+static double change(const struct crossing *p, double time, const struct chance *c)
 {
 	double j = p->regime * expm1(c->late / p->hazard), rest = time - j, g;
 
@@ -245,7 +245,7 @@ static double change(
 		return j + rest * c->fall;
 	if (p->growth > 0)
 		return time;
-	g = p->future->growth * c->growth / age;
+	g = p->future->growth * c->growth / p->lasts;
 	return j + hasten(rest, g);
 }
 
@@ -273,7 +273,7 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 	time = hasten(time, p->growth) * exp(p->stray * c->stray - p->lean);
 	if (p->straight > v * NOTHING * age)
 		return INFINITY;
-	return change(p, time, age, c);
+	return change(p, time, c);
 }
 
 /* 1 for this share of the draws, evenly spaced. */

@@ -8,9 +8,11 @@
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c, where
  * a is its age (an old one lasts long), the rate begins to grow as e^{g (t - J)}, or
- * drops and stays at the lower value; one that grows can only drop.  Hazard, growth and
- * share of drops depend on whether the rate at present falls, is constant or rises in the
- * coordinate.
+ * drops and stays at the lower value; one that grows can only drop.  After k changes, a
+ * is no more than the age of the unit over 1 + k, and g is in units of the reciprocal of
+ * that: where the rate has often changed, it will do so again, as soon and as fast.
+ * Hazard, growth and share of drops depend on whether the rate at present falls, is
+ * constant or rises in the coordinate.
  *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row (as
