@@ -22,7 +22,7 @@ struct wp_separate *wp_separate_new(
 {
 	const double *all[] = { &par->delay, &par->pulse_duration, &par->gain,
 		&par->spacing, &par->calibration, &par->false_alarm, &par->learn };
-	struct separate_par inner = { .method = SEPARATE_FIT };
+	struct separate_par inner = { .method = SEPARATE_FIT, .rate = par->rate };
 	struct wp_separate *s;
 
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -134,6 +134,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 	int doubtful;
 	struct separate_par par = { .method = method == METHOD_FIT ? SEPARATE_FIT
 								   : SEPARATE_MASKS,
+		.rate = rate,
 		.learn = isnan(learn) ? 0 : learned_samples(rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.most_pulses = most_pulses(),

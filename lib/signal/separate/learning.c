@@ -15,16 +15,18 @@ static const double FOLLOWED = 20;
 
 /* Samples of pulses that may be computed to learn from the beginning of a record: groups
  * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind an estimated low-pass
- * 7.7e8; a record that pulses do not describe would take more.  And per sample of a long
- * record, some second of processor time per second of 10 kHz, for what is tried later.
- * Separating takes as much at most: of the scenes of tests/matrix/scenes.tsv none that
- * pulses describe takes more than 4800 per sample (dense-350-gauss), bubbles alone take
- * 17000, with many particles among them 59000. */
-static const double EFFORT = 9e8, EFFORT_PER_SAMPLE = 9000;
+ * 7.7e8; a record that pulses do not describe would take more.  And per second of a long
+ * record, some second of processor time, for what is tried later.  Separating takes as
+ * much at most: of the scenes of tests/matrix/scenes.tsv at 10 kHz none that pulses
+ * describe takes more than 4.8e7 per second (dense-350-gauss), bubbles alone take 1.7e8,
+ * with many particles among them 5.9e8. */
+static const double EFFORT = 9e8, EFFORT_PER_SECOND = 9e7;
 
-double separate_effort(double samples)
+double separate_effort(const struct separate *s, double samples)
 {
-	return fmax(EFFORT, EFFORT_PER_SAMPLE * samples);
+	double rate = s->par.rate > 0 ? s->par.rate : 1e4;
+
+	return fmax(EFFORT, EFFORT_PER_SECOND * samples * s->ratio / rate);
 }
 
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
@@ -202,7 +204,7 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 	separate_review(s);
 	known = known_of(s);
 	known.most =
-		share * (separate_effort((double)(s->buffer[0].begin + (long long)n)) -
+		share * (separate_effort(s, (double)(s->buffer[0].begin + (long long)n)) -
 				s->effort);
 	status = calibrate(&known, s->buffer[0].x, s->buffer[1].x, n, &s->cal);
 	s->effort += s->cal.work;

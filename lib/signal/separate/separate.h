@@ -68,6 +68,7 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
+	double rate;   /* of the record, Hz, which limits the work; 0: 10 kHz */
 	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST;
 			  0: SEPARATE_LEARN */
 	int clearly;   /* 1: learn only from what shows the instrument clearly, of pulses

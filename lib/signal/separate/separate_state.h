@@ -214,9 +214,9 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 
 /* learning.c */
 
-/* Samples of pulses that may be computed for the first samples of a record, to learn from
- * them, and as many to separate them. */
-double separate_effort(double samples);
+/* Samples of pulses that may be computed for the first samples of the buffers, to learn
+ * from them, and as many to separate them. */
+double separate_effort(const struct separate *s, double samples);
 
 /* Learns the instrument from the oldest samples; if they contain no particle, half of
  * them are skipped and the next are tried. */
