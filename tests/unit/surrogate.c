@@ -164,8 +164,53 @@ static void test_severity(void)
 		severity);
 }
 
+/* Below a ball, whose largest pressure is 1. */
+static struct footprint ball(double yield)
+{
+	enum { N = 21 };
+	const struct stress_par par = {
+		.nx = N, .ny = N, .dx = 3. / N, .dy = 3. / N, .nu = 0.3, .mu = 0.2
+	};
+	struct stress *stress = stress_new(&par);
+	struct footprints *f = footprints_new(&par);
+	const struct footprint *list;
+	struct footprint largest = { 0 };
+	double p[N * N];
+	size_t count;
+
+	for (int i = 0; i < N * N; i++) {
+		double x = (i % N + 0.5) * par.dx - 1.5;
+		double y = ((double)(i / N) + 0.5) * par.dy - 1.5;
+		p[i] = sqrt(fmax(0, 1 - x * x - y * y));
+	}
+	if (!stress_load(stress, p) &&
+		!footprints_find(f, stress, p, yield, &list, &count) && count > 0)
+		largest = list[0];
+	footprints_free(f);
+	stress_free(stress);
+	return largest;
+}
+
+/* A stress that is larger by a part acts like a yield stress that is smaller by it. */
+static void test_change(double yield)
+{
+	const double part = 1e-3;
+	struct footprint less = ball(yield * (1 + part)), more = ball(yield * (1 - part));
+	double change = (more.volume - less.volume) / (2 * part);
+
+	ok(less.cells > 50 && less.cells == more.cells && less.error == 0,
+		"near a yield stress of %g the same %zu cells fail, all measured", yield,
+		less.cells);
+	/* To first order, on the parabola through three depths: some per cent. */
+	near(ball(yield).change / change, 1, 0.05,
+		"the volume changes with the stress as it states");
+}
+
 int main(void)
 {
+	test_change(0.29);
+	test_change(0.35);
+	test_change(0.38);
 	test_levels();
 	test_severity();
 	test_contact(0, 1, 0, 1, 0);
