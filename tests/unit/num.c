@@ -8,6 +8,7 @@
 #include "num/rng.h"
 #include "num/room.h"
 #include "num/select.h"
+#include "num/standing.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>
@@ -314,6 +315,40 @@ static void test_dots(void)
 	ok(right, "inner products of several arrays have the bits of those of two");
 }
 
+/* Values that stand out of noise of variance 1, in a lobe of width w. */
+static double standing_of_lobe(double w)
+{
+	double y[1000], count = 0;
+
+	for (int i = 0; i < 1000; i++)
+		y[i] = 300 * exp(-0.5 * pow((i - 500) / w, 2));
+	return standing_count(y, 1000, &count) == NUM_OK ? count : NAN;
+}
+
+/* The transform of a lobe of width w falls to ten times the noise where (w omega)^2 is
+ * log(300^2 2 pi w^2 / 1e4): 2 * 1000 omega / (2 pi) values are below. */
+static void test_standing(void)
+{
+	enum { N = 4096 };
+	gsl_rng *rng = rng_new(5, 0, RNG_NOISE);
+	double y[N], noise = 0, tone = 0, lobe = standing_of_lobe(25);
+
+	for (int i = 0; i < N; i++)
+		y[i] = gsl_ran_gaussian_ziggurat(rng, 1);
+	ok(standing_count(y, N, &noise) == NUM_OK && noise <= 4,
+		"of noise hardly a value stands out");
+	for (int i = 0; i < N; i++)
+		y[i] = sin(2 * M_PI * 25 * i / N);
+	ok(standing_count(y, N, &tone) == NUM_OK && fabs(tone - 2) < 1e-9,
+		"of a tone two values do");
+	near(lobe, 1000 / (25 * M_PI) * sqrt(log(9 * 2 * M_PI * 625)), 2,
+		"of a lobe as many as its band has");
+	near(standing_of_lobe(12.5),
+		1000 / (12.5 * M_PI) * sqrt(log(9 * 2 * M_PI * 156.25)), 2,
+		"of half a lobe nearly twice as many");
+	gsl_rng_free(rng);
+}
+
 int main(void)
 {
 	test_room();
@@ -339,5 +374,6 @@ int main(void)
 	test_select();
 	test_small();
 	test_dots();
+	test_standing();
 	return tap_done();
 }

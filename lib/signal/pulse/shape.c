@@ -360,7 +360,7 @@ LANES_CLONES static void sample_inside(const struct shape *shape, double t0, dou
 		y = -rate * (c1 + u * (2 * c2 + u * 3 * c3));
 		if (by_t0)
 			store(by_t0 + i, &y, m);
-		y = y * (start + at) / T;
+		y *= (start + at) * (1 / T);
 		if (by_T)
 			store(by_T + i, &y, m);
 	}

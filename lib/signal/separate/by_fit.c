@@ -1,18 +1,26 @@
 /* by_fit.c - sections taken apart by joint fits, window by window */
+#include "num/standing.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <string.h>
 
 /* Largest number of pulses that are searched for in n samples: three numbers of each may
- * be half of the 4 SHAPE_BAND per duration that two channels have in the band of pulses.
- */
-static int most_pulses(const struct separate *s, size_t n)
+ * be half of the values that the samples have.  Those are 4 SHAPE_BAND per duration in
+ * the band of pulses on two channels; in a whole section, which may be no particles, only
+ * those that stand out of the noise: so many more pulses describe whatever these are. */
+static enum separate_status most_pulses(
+	const struct separate *s, long long from, size_t n, int whole, int *most)
 {
-	double most = 4 + 2 * SHAPE_BAND / 3 * (double)n / s->cal.duration;
+	double values = 4 * SHAPE_BAND * (double)n / s->cal.duration, standing = 0;
+	const struct channels y = channels_at(s, from);
 
-	if (s->par.sources)
-		most = s->par.sources;
-	return (int)fmin(most, s->par.most_pulses);
+	for (int c = 0; c < 2 && whole; c++)
+		if (standing_count(y.at[c], n, &standing) != NUM_OK)
+			return SEPARATE_MEMORY;
+	values = whole ? fmin(values, standing) : values;
+	*most = (int)fmin(
+		s->par.sources ? s->par.sources : 4 + values / 6, s->par.most_pulses);
+	return SEPARATE_OK;
 }
 
 /* Subtracts a pulse from channels k of sensor 1 and k + 1 of sensor 2, whose noise is
@@ -136,7 +144,9 @@ enum separate_status separate_fit_section(
 	after = cut ? 0 : sections_aside(s->sections, 1);
 	after = ready(s) - to < after ? (long)(ready(s) - to) : after;
 	n = (size_t)(to - from + before + after);
-	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
+	status = most_pulses(s, from, (size_t)(to - from), whole, &s->scene.max_pulses);
+	if (status != SEPARATE_OK)
+		return status;
 	s->scene.quiet[0] = (double)before;
 	s->scene.quiet[1] = (double)after;
 	for (int c = 0; c < 2; c++)
