@@ -117,7 +117,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 			else
 				tried[failed++] = c;
 		}
-		chi2 = joint_fit_roughly(j, s, pulses, *m);
+		chi2 = joint_fit_all(j, s, pulses, *m);
 	} while (joint_split_pulses(j, s, pulses, m, &chi2));
 	full = s->give_up && are_more(j, s, *m);
 	if (!full) {

@@ -50,22 +50,24 @@ static double threshold_beside(const struct joint_scene *s, double energy)
 	return fmax(s->threshold_near, s->misfit * energy);
 }
 
-/* Decrease of chi-square that pulse i of m must bring. */
-static double worth(
-	const struct joint_scene *s, const struct joint_pulse *pulses, int m, int i)
+/* 1 if pulse i, the last one added, is worth a decrease of chi-square from before to
+ * after. */
+static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, int m,
+	int i, double before, double after)
 {
 	double energy = energy_near(s, pulses, m, i);
+	double need = energy > 0 ? threshold_beside(s, energy) : s->threshold;
 
-	return energy > 0 ? threshold_beside(s, energy) : s->threshold;
+	return before - after > need;
 }
 
 /* Fits the pulses near pulse i of m, without the last one if it is only listed. */
 static double fit_near(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int m, int i, int listed, double goal)
+	struct joint_pulse *pulses, int m, int i, int listed)
 {
 	int set[JOINT_PULSES_MAX], count = neighbours(s, pulses, m, i, 0.8, set);
 
-	return joint_fit_set(j, s, pulses, set, count - listed, 30, 0.1, goal);
+	return joint_fit_set(j, s, pulses, set, count - listed, 30, 0.1);
 }
 
 /* Fits the pulse just added with those near it; 1 if it was worth it, otherwise
@@ -74,10 +76,9 @@ static int accept_more(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, const struct joint_pulse *before,
 	double *chi2)
 {
-	double goal = *chi2 - worth(s, pulses, *m, *m - 1);
-	double after = fit_near(j, s, pulses, *m, i, 0, goal);
+	double after = fit_near(j, s, pulses, *m, i, 0);
 
-	if (*chi2 - after > worth(s, pulses, *m, *m - 1)) {
+	if (worth(s, pulses, *m, *m - 1, *chi2, after)) {
 		*chi2 = after;
 		return 1;
 	}
@@ -95,7 +96,7 @@ int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 	pulses[i] = (struct joint_pulse){ .t = c->t, .delta = c->delta, .a = c->a };
 	joint_subtract(j, s, &pulses[i], 1);
 	++*m;
-	joint_fit_set(j, s, pulses, &i, 1, 8, 1, INFINITY);
+	joint_fit_set(j, s, pulses, &i, 1, 8, 1);
 	return accept_more(j, s, pulses, m, i, before, chi2);
 }
 
@@ -115,7 +116,7 @@ static int try_split(struct joint *j, const struct joint_scene *s,
 	joint_subtract(j, s, &pulses[i], 1);
 	joint_subtract(j, s, &pulses[old], 1);
 	++*m;
-	joint_fit_set(j, s, pulses, pair, 2, 10, 1, INFINITY);
+	joint_fit_set(j, s, pulses, pair, 2, 10, 1);
 	return accept_more(j, s, pulses, m, i, before, chi2);
 }
 
@@ -179,14 +180,13 @@ static int accept_fewer(struct joint *j, const struct joint_scene *s,
 	double *chi2)
 {
 	int last = --*m;
-	double goal, after;
+	double after;
 
 	for (int i = k; i < last; i++)
 		pulses[i] = pulses[i + 1];
 	pulses[last] = before[k]; /* for neighbours() and worth() only */
-	goal = *chi2 + worth(s, pulses, last + 1, last);
-	after = fit_near(j, s, pulses, last + 1, last, 1, goal);
-	if (after - *chi2 > worth(s, pulses, last + 1, last)) {
+	after = fit_near(j, s, pulses, last + 1, last, 1);
+	if (worth(s, pulses, last + 1, last, after, *chi2)) {
 		restore(j, s, pulses, m, before, last + 1);
 		return 0;
 	}
@@ -270,8 +270,7 @@ void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 			pulses[k].delta = delta[1];
 			joint_subtract(j, s, &pulses[i], 1);
 			joint_subtract(j, s, &pulses[k], 1);
-			/* With more the ratio is below 2e-11. */
-			after = fit_near(j, s, pulses, m, i, 0, *chi2 + 50);
+			after = fit_near(j, s, pulses, m, i, 0);
 			ratio = exp(-0.5 * fabs(after - *chi2));
 			other[0] = after < *chi2 ? before[i] : pulses[i];
 			other[1] = after < *chi2 ? before[k] : pulses[k];

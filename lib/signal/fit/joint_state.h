@@ -118,15 +118,11 @@ void joint_make_columns(
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 
-/* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square.  Given
- * up where even steps that gain as much as the last one would not bring it to goal. */
+/* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
 double joint_fit_set(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, const int *set, int m, int max_steps,
-	double tolerance, double goal);
+	double tolerance);
 double joint_fit_all(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
-/* The same until a step gains less than a tenth: guesses for more searches. */
-double joint_fit_roughly(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
 /* Covariances from the inverse of the undamped normal matrix. */
 void joint_fill_covariance(

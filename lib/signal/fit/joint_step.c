@@ -274,7 +274,7 @@ static void step_back(struct joint *j, struct joint_pulse *pulses, const int *se
 
 double joint_fit_set(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, const int *set, int m, int max_steps,
-	double tolerance, double goal)
+	double tolerance)
 {
 	double lambda = 1e-4, chi2;
 	struct before old;
@@ -305,8 +305,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			chi2 = after;
 			lambda = lambda > 1e-9 ? lambda / 10 : lambda;
 			fresh = 0;
-			if (gain < tolerance ||
-				chi2 - gain * (max_steps - step - 1) > goal)
+			if (gain < tolerance)
 				break;
 			continue;
 		}
@@ -321,13 +320,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 double joint_fit_all(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
 {
-	return joint_fit_set(j, s, pulses, j->all, m, 50, 1e-4, INFINITY);
-}
-
-double joint_fit_roughly(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
-{
-	return joint_fit_set(j, s, pulses, j->all, m, 30, 0.1, INFINITY);
+	return joint_fit_set(j, s, pulses, j->all, m, 50, 1e-4);
 }
 
 enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
