@@ -416,7 +416,6 @@ fails "swapped sensors are named" 1 'pulses reach channel 2 first' duet swapped.
 # The leads of one coil exchanged.
 awk -F '\t' -v OFS='\t' '/^#/ { next } NR > 6 && !sub(/^-/, "", $3) { $3 = "-" $3 } 1' rig.txt |
 	sigconvert --from text >opposite.au
-rows() { grep -v '^#' "$1"; }
 duet rig.au >plain.tsv
 rows plain.tsv >a
 duet --instrument opposite-rig.tsv opposite.au 2>said >b.tsv
