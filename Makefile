@@ -147,14 +147,15 @@ $(eval $(call archive,libcli.a,$(CLI_SRC)))
 $(eval $(call archive,libcommon.a,$(COMMON_SRC)))
 
 # The library for other programs: the modules that lib/wearpipe/ needs, joined into one
-# object whose hidden names are made local, as an archive and as a shared object.
+# object whose names are local but for wp_*, as an archive and as a shared object.
+# Functions that GCC compiles for several processors are not hidden by -fvisibility.
 FACE_SRC := $(wildcard lib/wearpipe/*.c)
 SONAME = libwearpipe.so.0
 OBJCOPY ?= objcopy
 $(B)/face.o: $(call objects,$(FACE_SRC)) $(B)/libwearpipe.a
 	$(call say,LD,$@)
 	$(Q)$(LD) -r -o $@ $(call objects,$(FACE_SRC)) $(B)/libwearpipe.a
-	$(Q)$(OBJCOPY) --localize-hidden $@
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='wp_*' $@
 $(B)/install/libwearpipe.a: $(B)/face.o
 	@mkdir -p $(@D)
 	@rm -f $@
