@@ -40,6 +40,12 @@ void dot9(const double *const x[3], const double *const y[3], size_t n, double o
 /* y += factor x */
 void add_scaled(double *y, double factor, const double *x, size_t n);
 
+static inline void negate(double *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		x[i] = -x[i];
+}
+
 static inline double mean_of(const double *x, size_t n)
 {
 	double mean = 0;

@@ -84,11 +84,18 @@ static void report(const struct separate *s, double rate)
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
 	stats_set("calibrations", known ? known->attempts : 0);
-	if (known && known->gain < 0)
-		warn("the pulses of channel 2 have the sign opposite to those of channel 1: "
-		     "the channel is negated");
 	if (known)
 		instrument_note(known, rate / ratio);
+}
+
+static void tell_polarity(const struct separate *s, const char *name)
+{
+	const struct calibration *known = separate_calibration(s);
+
+	if (known && known->gain < 0)
+		warn("%s: the pulses of channel 2 have the sign opposite to those of "
+		     "channel 1: the channel is negated",
+			name);
 }
 
 static int put_ready(struct early *e, struct found *out)
@@ -274,6 +281,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		warn("%s: not written: what was learned is doubtful, or nothing was",
 			file);
 	report(s, (double)out->rate);
+	tell_polarity(s, signal_name(in));
 	tell_missing(s, out, signal_name(in));
 	tell_together(s, out, signal_name(in));
 	tell_events(s, out);

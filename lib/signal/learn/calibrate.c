@@ -314,8 +314,8 @@ static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 
 	if (!y2)
 		return SEPARATE_MEMORY;
-	for (size_t i = 0; i < n; i++)
-		y2[i] = -x2[i];
+	memcpy(y2, x2, n * sizeof *y2);
+	negate(y2, n);
 	status = calibrate_as(par, x1, y2, n, c);
 	free(y2);
 	c->gain = -c->gain;

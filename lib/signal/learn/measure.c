@@ -392,12 +392,6 @@ static enum separate_status find_reverse(
 					   : status;
 }
 
-static void negate(double *y, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		y[i] = -y[i];
-}
-
 /* OPPOSITE if the channels have nothing in common, but would have if one were negated. */
 static enum separate_status find_opposite(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)

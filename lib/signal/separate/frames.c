@@ -1,5 +1,6 @@
 /* frames.c - frames of a record: which samples the converter has measured, and the
  * components of both sensors that are separated */
+#include "num/dot.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
@@ -18,8 +19,7 @@ static double sign_of(const struct separate *s, int sensor)
 void separate_align_signs(struct separate *s)
 {
 	for (int k = 1; k < s->channels && sign_of(s, 1) < 0; k += 2)
-		for (size_t i = 0; i < s->buffer[k].n; i++)
-			s->buffer[k].x[i] *= -1;
+		negate(s->buffer[k].x, s->buffer[k].n);
 }
 
 static struct converter *converter_of(struct separate *s, int sensor, int component)

@@ -113,6 +113,16 @@ static void walk_shape(struct walk *w, struct shape **shape)
 	}
 }
 
+/* Of either sign, but not 0. */
+static void visit_gain(struct walk *w, double *gain)
+{
+	visit(w, "gain", 0, -INFINITY, INFINITY, gain);
+	if (w->status == INSTRUMENT_OK && !(fabs(*gain) >= DBL_MIN)) {
+		w->status = INSTRUMENT_MISSING;
+		w->missing = "gain";
+	}
+}
+
 static void walk_all(struct walk *w, struct instrument *in)
 {
 	enum { SHORTEST_HOP = 32 };
@@ -131,7 +141,7 @@ static void walk_all(struct walk *w, struct instrument *in)
 	c->reversed = flag(w, "reversed", c->reversed);
 	c->corrected = flag(w, "corrected", c->corrected);
 	reals(w, "duration", SHAPE_SHORTEST, &c->duration, 1);
-	reals(w, "gain", -INFINITY, &c->gain, 1);
+	visit_gain(w, &c->gain);
 	reals(w, "transit", DBL_MIN, &c->transit, 1);
 	reals(w, "delta_min", -INFINITY, &c->delta_min, 1);
 	reals(w, "delta_max", -INFINITY, &c->delta_max, 1);
