@@ -214,21 +214,47 @@ static void learn_misfit(
 		ex->example[i].outlier = share[i] > 4 * left + 4 * scatter[i];
 }
 
-/* Finds the pulses of an example: a single negative one, or positive ones. */
+/* Chi-square and twice the threshold for each pulse. */
+static double cost_of(const struct examples *ex, const struct joint_result *result, int m)
+{
+	return result->chi2 + 2 * ex->scene.threshold_near * m;
+}
+
+/* Finds the pulses of an example: a single negative one, or positive ones, or those of
+ * either sign, if there are such, where positive ones do not tolerably describe it. */
 static enum joint_status fit_example(
 	struct examples *ex, struct example *e, struct joint_result *result)
 {
 	const struct joint_scene *scene = scene_of(ex, e);
-	struct joint_scene one = *scene;
+	struct joint_scene either = *scene;
+	struct joint_pulse positive[EXAMPLE_PULSES];
+	struct joint_result first;
+	int m = 0;
 	enum joint_status status;
 
-	one.signs = one.max_pulses = 1;
+	either.signs = either.max_pulses = 1;
 	e->m = 0;
-	status = joint_fit(ex->joint, &one, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	status = joint_fit(
+		ex->joint, &either, e->y1, e->y2, e->n, e->pulse, &e->m, result);
 	if (status != JOINT_OK || (e->m == 1 && !result->full && e->pulse[0].a < 0))
 		return status;
 	e->m = 0;
-	return joint_fit(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	status = joint_fit(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	if (status != JOINT_OK || !ex->signs || !result->negative ||
+		result->chi2 < CALIBRATE_TOLERABLE * (double)result->dof)
+		return status;
+	first = *result;
+	memcpy(positive, e->pulse, sizeof positive);
+	m = e->m;
+	e->m = 0;
+	either.max_pulses = scene->max_pulses;
+	status = joint_fit(
+		ex->joint, &either, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	if (status != JOINT_OK || cost_of(ex, result, e->m) < cost_of(ex, &first, m))
+		return status;
+	memcpy(e->pulse, positive, sizeof positive);
+	e->m = m;
+	return joint_refine(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, e->m, result);
 }
 
 double examples_fit(struct examples *ex, double misfit)
@@ -261,7 +287,7 @@ double examples_fit(struct examples *ex, double misfit)
 
 			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
 		}
-		ex->penalised += result.chi2 + 2 * ex->scene.threshold_near * e->m;
+		ex->penalised += cost_of(ex, &result, e->m);
 		ex->dof += (double)result.dof;
 		e->excess = result.chi2 - (double)result.dof;
 		ex->excess += e->excess;

@@ -44,6 +44,7 @@ struct examples {
 	double dof;   /* of all examples, ... */
 	double excess;    /* ... their chi-square beyond it, and ... */
 	double energy;    /* ... that of their pulses */
+	int signs;        /* 1: clear pulses of both signs were found */
 	int corrected;    /* 1: the shape is one of twenty parameters, else of two */
 	double penalised; /* their chi-square and twice the threshold for each pulse, per
 			 degree */

@@ -364,7 +364,8 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		.misfit = c->misfit,
 		.shift = c->shift,
 		.before = c->work,
-		.most = par->most };
+		.most = par->most,
+		.signs = found && found->signs };
 	unsigned char *flags = c->whitening.tap ? NULL : malloc(2 * n + 1);
 	enum separate_status status =
 		ex.joint && (flags || c->whitening.tap) ? SEPARATE_OK : SEPARATE_MEMORY;
