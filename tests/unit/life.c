@@ -321,6 +321,77 @@ static void test_no_wear(void)
 	}
 }
 
+/* Whether a reading is rounded to the nearest level or down, it stays wrong by the same
+ * share of a level: no number of rows makes the time of the passage more certain. */
+static void test_readings_rounded_down(void)
+{
+	enum { LEVELS = 16 };
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	double life[DRAWS];
+	int late = 0, early = 0, rows = 0;
+
+	for (int n = 100; n <= 200; n += 50) {
+		struct bank *b = bank_new(&par);
+
+		for (int k = 0; k < n; k++) {
+			double y = LEVELS * (double)k / n + 0.1 * draw_normal(d);
+
+			bank_add(b, k, floor(y) / LEVELS);
+			if (k < 0.88 * n)
+				continue;
+			bank_draw(b, chances, k, 1, life);
+			sort_numbers(life, DRAWS);
+			late += metric_quantile(life, DRAWS, 0.05) > n - k;
+			early += metric_quantile(life, DRAWS, 0.95) < n - k;
+			rows++;
+		}
+		bank_free(b);
+	}
+	ok(late <= 0.1 * rows && early <= 0.1 * rows,
+		"readings that are rounded down end within the interval");
+	bank_chances_free(chances);
+	draw_free(d);
+}
+
+/* Largest difference between the lives on two clocks, relative, over n rows. */
+static double difference_of_clocks(int n, double origin, double unit)
+{
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct bank *here = bank_new(&par), *there = bank_new(&par);
+	double a[DRAWS], b[DRAWS], most = 0;
+
+	for (int k = 0; k < n; k++) {
+		double y = (double)k / n + 0.01 * draw_normal(d);
+
+		bank_add(here, k, y);
+		bank_add(there, origin + unit * k, y);
+		if (!bank_ready(here))
+			continue;
+		bank_draw(here, chances, k, 1, a);
+		bank_draw(there, chances, origin + unit * k, 1, b);
+		for (int i = 0; i < DRAWS; i++)
+			if (a[i] * unit != b[i])
+				most = fmax(most, fabs(a[i] * unit / b[i] - 1));
+	}
+	bank_free(here);
+	bank_free(there);
+	bank_chances_free(chances);
+	draw_free(d);
+	return most;
+}
+
+static void test_clock(void)
+{
+	double most = difference_of_clocks(140, 1000, 1.1);
+
+	ok(most > 0 && most < 1e-6,
+		"the clock's unit and origin change no life by more than rounding");
+}
+
 static void test_disturbances(void)
 {
 	double plain = median_life(60, as_it_is, 0, 0);
@@ -659,6 +730,8 @@ int main(void)
 	test_orders();
 	test_runin();
 	test_straight_wear();
+	test_readings_rounded_down();
+	test_clock();
 	test_disturbances();
 	test_no_wear();
 	test_few_rows();
