@@ -562,13 +562,42 @@ static void test_bursts(void)
 
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
+static const struct adaptive_par default_filter = { .filter = { 300, 0,
+							    RESAMPLE_SYSTEMATIC, 0.5, 0 },
+	.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
+	.process = NAN,
+	.noise = NAN,
+	.seed = 1 };
+
+/* No exponential passes through 0.  A state is within 20 times the noise of its reading,
+ * 0.6, or the particles are drawn from the readings; half as much again for the estimate
+ * of the noise. */
+static void test_passage_through_zero(void)
+{
+	struct draw *d = draw_new(6, 0, RNG_NOISE);
+	double farthest = 0;
+
+	for (int path = 0; path < 12; path++) {
+		struct adaptive *a = adaptive_new(&default_filter);
+
+		for (int k = 0; k < 40; k++) {
+			double y = 3 - (path % 2 ? 0.5 * k : 0.02 * k * k) +
+				   0.03 * draw_normal(d);
+			struct adaptive_row r;
+
+			adaptive_step(a, k, y, &r);
+			farthest = fmax(farthest, fabs(r.state - y));
+		}
+		adaptive_free(a);
+	}
+	ok(farthest > 0.01 && farthest < 0.9,
+		"the filter follows a series through zero: %.3g off at most", farthest);
+	draw_free(d);
+}
+
 static void test_adaptive(void)
 {
-	struct adaptive_par par = { .filter = { 300, 0, RESAMPLE_SYSTEMATIC, 0.5, 0 },
-		.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
-		.process = NAN,
-		.noise = NAN,
-		.seed = 1 };
+	const struct adaptive_par par = default_filter;
 	struct adaptive *a = adaptive_new(&par), *b = adaptive_new(&par);
 	struct draw *d = draw_new(6, 0, RNG_NOISE);
 	struct adaptive_row r, s;
@@ -741,5 +770,6 @@ int main(void)
 	test_fleet();
 	test_bursts();
 	test_adaptive();
+	test_passage_through_zero();
 	return tap_done();
 }

@@ -39,7 +39,9 @@ struct grey grey_of(const struct grey_series *s)
 
 double grey_rate(const struct grey *g)
 {
-	return g->fit.xx > 0 && isfinite(g->fit.xx) && isfinite(g->fit.xy)
+	double most = grey_rate_limit(g->n - 1, g->span);
+
+	return isfinite(g->fit.xx) && fabs(g->fit.xy) < most * g->fit.xx
 		       ? g->fit.xy / g->fit.xx
 		       : 0;
 }

@@ -13,6 +13,10 @@ static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
 					  single outlier does not look like a drift */
 
+/* Of an observation, in recent errors of noise and model: farther than this from what was
+ * expected it is an outlier, and no particle that far from it follows it. */
+static const double OUTLYING = 20;
+
 /* A past row of all particles, and the gap before it. */
 struct lag {
 	struct filter_step step;
@@ -180,7 +184,7 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 {
 	const struct filter_step *newest = &a->lag[0].step;
 	size_t n = a->par.filter.particles;
-	double centre = newest->x[0], share = 1.0 / count, end = h, *mean = a->mean;
+	double centre = newest->x[0], share = 1.0 / count, end = h, most, *mean = a->mean;
 	int newer;
 	const struct sums *older = add_older(a, count, centre, &newer);
 	struct grey_interval ahead;
@@ -188,13 +192,15 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 	for (int k = 0; k < count; k++)
 		end += a->lag[k].gap;
 	ahead = grey_interval(end, h);
+	most = grey_rate_limit(count, end - h);
 	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
 		size_t last = i - 1 < newest->n ? i - 1 : i - 2;
 		struct pair s = add_states(older, a->lag, newer, i -= 2, last, centre);
 		lanes u = s.u * share, x = s.x * share, uu = s.uu - s.u * u,
 		      ux = s.ux - s.u * x, middle = centre + x,
-		      rate = lanes_if(
-			      lanes_and(uu > 0, lanes_abs(middle) > 3 * noise), -ux / uu),
+		      rate = lanes_if(lanes_and(lanes_abs(ux) < most * uu,
+					      lanes_abs(middle) > 3 * noise),
+			      -ux / uu),
 		      level = middle + rate * u;
 
 		mean[last] = level[1];
@@ -301,7 +307,7 @@ static int is_outlier(
 	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
 
 	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
-		     miss * miss > 400 * usual;
+		     miss * miss > OUTLYING * OUTLYING * usual;
 	a->outliers += (unsigned long)a->outlier;
 	return a->outlier;
 }
@@ -375,7 +381,8 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 		/* The spread of the particles is limited: diverged particles would
 		 * otherwise pass for uncertain ones. */
 		own = noise * noise + process * process;
-		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own));
+		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own)) ||
+		       fabs(y - row->state) > OUTLYING * noise;
 		a->restarts += (unsigned long)lost;
 	}
 	if (lost) {
