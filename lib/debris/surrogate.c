@@ -134,37 +134,40 @@ static struct loaded find_loaded(const double *pressure, size_t cells, double ha
 	return l;
 }
 
+/* Sums of products of the gradients, in cells. */
+struct gradients {
+	lanes xx, xy, yy;
+};
+
+/* Between two rows. */
+static void add_gradients(
+	const double *p, const double *q, size_t nx, struct gradients *sum)
+{
+	for (size_t x = 0; x + 1 < nx; x += 2) {
+		int n = x + 2 < nx ? 2 : 1;
+		lanes a = lanes_load(p + x, n), b = lanes_load(p + x + 1, n),
+		      c = lanes_load(q + x, n), d = lanes_load(q + x + 1, n);
+		lanes gx = (b + d) - (a + c), gy = (d - b) + (c - a);
+
+		lanes_add(&sum->xx, gx * gx, n);
+		lanes_add(&sum->xy, gx * gy, n);
+		lanes_add(&sum->yy, gy * gy, n);
+	}
+}
+
 struct surrogate_contact surrogate_contact(const struct stress_par *par,
 	const double *pressure, double yield, double hardness)
 {
 	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 	struct loaded l = find_loaded(pressure, nx * ny, hardness);
-	double xx = 0, xy = 0, yy = 0, sum;
+	struct gradients g = { .xx = { 0 } };
+	double xx, xy, yy, sum;
 
-	for (size_t y = 0; y + 1 < ny; y++) {
-		const double *p = pressure + y * nx, *q = p + nx;
-		size_t a = lanes_next(p, 0, nx), b = lanes_next(q, 0, nx);
-
-		for (size_t x = 1; x < nx; x++) {
-			double gx, gy;
-
-			/* Most of the surface is free: the next loaded cells. */
-			a = a + 1 < x ? lanes_next(p, x - 1, nx) : a;
-			b = b + 1 < x ? lanes_next(q, x - 1, nx) : b;
-			if (x < a && x < b) {
-				x = lesser(a, b) - 1;
-				continue;
-			}
-			gx = (p[x] + q[x]) - (p[x - 1] + q[x - 1]);
-			gy = (q[x] - p[x]) + (q[x - 1] - p[x - 1]);
-			xx += gx * gx;
-			xy += gx * gy;
-			yy += gy * gy;
-		}
-	}
-	xx /= par->dx * par->dx;
-	xy /= par->dx * par->dy;
-	yy /= par->dy * par->dy;
+	for (size_t y = 0; y + 1 < ny; y++)
+		add_gradients(pressure + y * nx, pressure + (y + 1) * nx, nx, &g);
+	xx = (g.xx[0] + g.xx[1]) / (par->dx * par->dx);
+	xy = (g.xy[0] + g.xy[1]) / (par->dx * par->dy);
+	yy = (g.yy[0] + g.yy[1]) / (par->dy * par->dy);
 	sum = xx + yy > 0 ? xx + yy : 1;
 	return (struct surrogate_contact){
 		.property = { [SURROGATE_FLOW] = l.cells > 0 ? l.flowing / l.cells : 0,
