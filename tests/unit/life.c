@@ -595,6 +595,32 @@ static void test_passage_through_zero(void)
 	draw_free(d);
 }
 
+/* No curve through a step has to do with the values before and after it: a forecast is at
+ * most grey_reach() times the newest value of the fit, e^4 in one row. */
+static void test_forecast_after_step(void)
+{
+	struct draw *d = draw_new(6, 0, RNG_NOISE);
+	double farthest = 0;
+
+	for (int path = 0; path < 6; path++) {
+		struct adaptive *a = adaptive_new(&default_filter);
+
+		for (int k = 0; k < 100; k++) {
+			double y = (k < 50 ? 0 : 100) + 0.1 * draw_normal(d);
+			struct adaptive_row r;
+
+			adaptive_step(a, k, y, &r);
+			if (k > 0)
+				farthest = fmax(
+					farthest, fmax(fabs(r.grey), fabs(r.prediction)));
+		}
+		adaptive_free(a);
+	}
+	ok(farthest > 99 && farthest < 100 * exp(4),
+		"forecasts after a step are within reach: %.4g at most", farthest);
+	draw_free(d);
+}
+
 static void test_adaptive(void)
 {
 	const struct adaptive_par par = default_filter;
@@ -771,5 +797,6 @@ int main(void)
 	test_bursts();
 	test_adaptive();
 	test_passage_through_zero();
+	test_forecast_after_step();
 	return tap_done();
 }

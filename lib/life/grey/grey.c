@@ -94,5 +94,10 @@ double grey_passage(double now, double rate, double limit)
 
 double grey_forecast(const struct grey *g, double h, double gap)
 {
-	return grey_curve(grey_level(g), grey_rate(g), g->span + h, gap);
+	double rate = grey_rate(g),
+	       next = grey_curve(grey_level(g), rate, g->span + h, gap),
+	       newest = g->fit.mean_y - rate * g->fit.mean_x,
+	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
+
+	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;
 }

@@ -82,6 +82,14 @@ static inline double grey_rate_limit(double n, double span)
 	return 2 * n / span;
 }
 
+/* Largest ratio of a forecast, h after the newest point, to the value of the fit there
+ * that rates up to a limit allow, and one more interval as a tolerance.  Beyond, the
+ * curve in time from the oldest point on has nothing to do with the points. */
+static inline double grey_reach(double limit, double h)
+{
+	return exp(fmin(600, 2 + limit * h));
+}
+
 /* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
  * omitted term is x^10 / 11!. */
 static const double GREY_SERIES = 0.1;

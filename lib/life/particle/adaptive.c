@@ -179,12 +179,14 @@ static const struct sums *add_older(
 
 /* The grey forecast, h after the newest of count rows, of every particle.  Particles with
  * a common ancestor share its sums.  An exponential through states that cannot be
- * distinguished from 0 is meaningless: such states keep their mean. */
+ * distinguished from 0 is meaningless, and so is one beyond grey_reach(): such states
+ * keep their mean. */
 static void forecast(struct adaptive *a, int count, double h, double noise)
 {
 	const struct filter_step *newest = &a->lag[0].step;
 	size_t n = a->par.filter.particles;
-	double centre = newest->x[0], share = 1.0 / count, end = h, most, *mean = a->mean;
+	double centre = newest->x[0], share = 1.0 / count, end = h, most, reach,
+	       *mean = a->mean;
 	int newer;
 	const struct sums *older = add_older(a, count, centre, &newer);
 	struct grey_interval ahead;
@@ -193,6 +195,7 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 		end += a->lag[k].gap;
 	ahead = grey_interval(end, h);
 	most = grey_rate_limit(count, end - h);
+	reach = grey_reach(most, h);
 	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
 		size_t last = i - 1 < newest->n ? i - 1 : i - 2;
 		struct pair s = add_states(older, a->lag, newer, i -= 2, last, centre);
@@ -201,23 +204,31 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 		      rate = lanes_if(lanes_and(lanes_abs(ux) < most * uu,
 					      lanes_abs(middle) > 3 * noise),
 			      -ux / uu),
-		      level = middle + rate * u;
+		      level = middle + rate * u,
+		      limit = reach * lanes_abs(level - rate * s.tail);
 
-		mean[last] = level[1];
-		mean[i] = level[0];
-		a->sums[last].u = rate[1];
-		a->sums[i].u = rate[0];
+		for (int k = 0; k < 2; k++) {
+			struct sums *to = &a->sums[k ? last : i];
+
+			to->tail = limit[k];
+			to->u = rate[k];
+			to->x = middle[k];
+			mean[k ? last : i] = level[k];
+		}
 	}
 	/* in a loop of its own, so that several exponentials overlap in the processor */
 	for (size_t i = 0; i < newest->n; i += 2) {
 		int width = newest->n - i < 2 ? 1 : 2;
-		lanes level = lanes_load(mean + i, width),
-		      rate = { a->sums[i].u, a->sums[i + (size_t)width - 1].u };
+		const struct sums *one = &a->sums[i], *two = one + width - 1;
+		lanes level = lanes_load(mean + i, width), rate = { one->u, two->u },
+		      limit = { one->tail, two->tail }, middle = { one->x, two->x },
+		      next = grey_curve_near(level, rate, &ahead);
 		lane_mask far = lanes_abs(rate) > ahead.largest_rate;
 
-		lanes_store(mean + i, grey_curve_near(level, rate, &ahead), width);
 		for (int k = 0; (far[0] | far[1]) && k < width; k++)
-			mean[i + (size_t)k] = grey_curve(level[k], rate[k], end, h);
+			next[k] = grey_curve(level[k], rate[k], end, h);
+		far = lanes_abs(next) > limit;
+		lanes_store(mean + i, lanes_pick(far, middle, next), width);
 	}
 	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
 		mean[i] = mean[newest->ancestor[i]];
