@@ -315,6 +315,7 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 
 		r->error = r->area *
 			   sqrt((1 - (double)m / n) * (varies + trend * trend / 12));
+		r->freedom = (double)(m - 1); /* m - 2 differences and the trend */
 	}
 }
 

@@ -265,6 +265,15 @@ static int list_near(const struct tiling *t, const struct few *few, int first, i
 	return count;
 }
 
+static inline void put_nodes(double *node, const lanes4 *sum, int nodes)
+{
+	if (nodes == TOGETHER)
+		memcpy(node, sum, sizeof *sum);
+	else
+		for (int i = 0; i < nodes; i++)
+			node[i] = (*sum)[i];
+}
+
 /* Sums of three numbers, which the processor adds side by side: for the first nodes of
  * those together. */
 LANES_CLONES static void add_near(const struct tiling *t, const struct near *near,
@@ -286,9 +295,9 @@ LANES_CLONES static void add_near(const struct tiling *t, const struct near *nea
 		sum1 += load * add1;
 		sum2 += load * add2;
 	}
-	memcpy(node + (size_t)c[0] * t->room, &sum0, (size_t)nodes * sizeof *node);
-	memcpy(node + (size_t)c[1] * t->room, &sum1, (size_t)nodes * sizeof *node);
-	memcpy(node + (size_t)c[2] * t->room, &sum2, (size_t)nodes * sizeof *node);
+	put_nodes(node + (size_t)c[0] * t->room, &sum0, nodes);
+	put_nodes(node + (size_t)c[1] * t->room, &sum1, nodes);
+	put_nodes(node + (size_t)c[2] * t->room, &sum2, nodes);
 }
 
 /* Adds the loads [first, end) to a run of nodes; node: its row of the first number. */
