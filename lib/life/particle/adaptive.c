@@ -56,8 +56,7 @@ struct adaptive {
 	long misses;
 	double process;             /* sigma_u */
 	double innovation, carried; /* running mean squares */
-	double z2[MONITOR];
-	int nz;
+	double z2;                  /* the same, of standardised ones */
 	int outlier; /* the last observation was classified as an outlier */
 	unsigned long restarts, outliers;
 };
@@ -269,7 +268,7 @@ static void push_past(struct adaptive *a, double y, double gap)
 
 static void start_particles(struct adaptive *a, double noise)
 {
-	a->nz = 0;
+	a->z2 = 1;
 	filter_start(a->filter, a->past, a->filled, sqrt(3) * noise);
 }
 
@@ -355,16 +354,8 @@ static void learn_process(
 /* 1 if the particles no longer follow the observations. */
 static int monitor(struct adaptive *a, double e, double variance)
 {
-	double sum = 0;
-
-	a->z2[a->nz++ % MONITOR] = fmin(e * e / variance, MONITOR_CLIP);
-	if (a->nz < MONITOR)
-		return 0;
-	for (int i = 0; i < MONITOR; i++)
-		sum += a->z2[i];
-	if (a->nz == 2 * MONITOR)
-		a->nz = MONITOR;
-	return sum > MONITOR * MONITOR_LIMIT;
+	a->z2 += (fmin(e * e / variance, MONITOR_CLIP) - a->z2) / MONITOR;
+	return a->z2 > MONITOR_LIMIT;
 }
 
 static void put_state(const struct adaptive *a, struct adaptive_row *row)
