@@ -72,7 +72,7 @@ fails "a diameter in seconds" 2 'want a diameter' ballcal --balls 1.tsv:5s
 fails "noise without a duration" 2 'both --noise and --pulse-duration' ballcal --balls 1.tsv:1mm --noise 1V
 fails "more false alarms than pulses" 2 'for any threshold' ballcal --balls 2.tsv:2mm --exponent 5 --noise 1V \
 	--pulse-duration 1s --false-alarms 2Hz 2>err
-fails "two pulses" 1 'too few' sh -c 'head -n 3 1.tsv >x; ballcal --balls x:1mm'
+fails "two pulses" 1 'at least 3' sh -c 'head -n 3 1.tsv >x; ballcal --balls x:1mm'
 fails "no amplitude" 1 "no column 'amplitude'" ballcal --balls st:1mm
 printf 'amplitude\tvelocity\n1\t1\n' >one.tsv
 fails "a ball of 100 m" 2 "'100' is more than 0.1 m, want a diameter" ballcal --balls one.tsv:100

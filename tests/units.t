@@ -68,6 +68,16 @@ for f in areal particles summary steps fits sizes aspects list points taps rates
 	told $f.tsv
 done
 
+# 40e-6 is 3.9999999999999996e-05 as a product, not as a quotient.
+printf '# units: um\ndiameter\n40\n50.3\n' >um.tsv
+is "cells with a unit are the numbers nearest to those that are meant" \
+	"$(abrade --gap 1um --friction 0.1 --hardness 1GPa um.tsv 2>/dev/null | awk -F '\t' '/^#/ { next }
+		!c { for (i = 1; i <= NF; i++) if ($i == "diameter") c = i; next } { print $c }' | tr '\n' ' ')" \
+	"4e-05 5.03e-05 "
+is "a long surface is doubted where its length has no unit" "$(for l in 0.2 200mm 20cm .2m; do
+	roughgen --points 8 --length $l --sq 1um --corr 50mm 2>&1 >/dev/null | grep -c 'without a unit'
+done | tr '\n' ' ')" "1 0 0 0 "
+
 # What people see: four digits, units, comments but no commands.
 records --pretty life.tsv >shown
 is "--pretty shows units in the header" "$(grep -c 't \[s\] *mean \[s\] *q05 \[s\].* p_no_failure$' shown)" 1

@@ -45,7 +45,7 @@ static const struct prog *prog;
 static char *recorded; /* " --word value ..." */
 static char **operand; /* NULL-ended */
 static const struct opt *rows[ROWS_MAX];
-static unsigned char given[ROWS_MAX];
+static const char *given[ROWS_MAX]; /* text, "" of a flag, or NULL */
 static int nrows;
 
 /* Shell quoting.  A blank after a colon is put outside of the quoted piece before
@@ -614,7 +614,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 				continue;
 			store(rows[i], optarg);
 			record(rows[i], optarg);
-			given[i] = 1;
+			given[i] = optarg ? optarg : "";
 		}
 	}
 	verbose = verbose_flag;
@@ -633,6 +633,15 @@ int opt_given(const char *word)
 	for (int i = 0; i < nrows; i++)
 		if (given[i] && strcmp(rows[i]->word, word) == 0)
 			return 1;
+	return 0;
+}
+
+int opt_given_bare(const char *word)
+{
+	for (int i = 0; i < nrows; i++)
+		if (given[i] && *given[i] && strcmp(rows[i]->word, word) == 0)
+			return strchr("0123456789.", given[i][strlen(given[i]) - 1]) !=
+			       NULL;
 	return 0;
 }
 

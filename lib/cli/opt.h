@@ -99,6 +99,8 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 
 /* 1 if the option with this word was on the command line. */
 int opt_given(const char *word);
+/* 1 if it was, and its number has no unit. */
+int opt_given_bare(const char *word);
 /* The word of the first of these rows whose option was given, or NULL. */
 const char *opt_any_given(const struct opt *table);
 

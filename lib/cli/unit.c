@@ -104,9 +104,7 @@ static struct spelling find_suffix(const char *text, size_t length, enum unit un
 	return (struct spelling){ .text = NULL };
 }
 
-/* The decimal number of n characters times 10^ten: the double nearest to it, which the
- * product of two rounded numbers need not be. */
-static double shift_decimal(const char *text, size_t n, int ten)
+double decimal_shift(const char *text, size_t n, int ten)
 {
 	enum { MOST = 100000 }; /* beyond double precision, and far from overflow */
 	const char *e = memchr(text, 'e', n);
@@ -128,7 +126,7 @@ static double shift_decimal(const char *text, size_t n, int ten)
 
 static double in_si(const char *text, size_t n, const struct spelling *s)
 {
-	return shift_decimal(text, n, s->ten) * s->times / s->over;
+	return decimal_shift(text, n, s->ten) * s->times / s->over;
 }
 
 double unit_scale(const char *text, enum unit unit)

@@ -45,6 +45,10 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 /* strtod, but not for hexadecimal numbers: of those it reads nothing. */
 double decimal_parse(const char *text, char **end);
 
+/* The decimal number of n characters times 10^ten: the double nearest to it, which the
+ * product of two rounded numbers need not be. */
+double decimal_shift(const char *text, size_t n, int ten);
+
 /* What one of the unit is in SI: 1e-3 for "mm"; 0 if text is not a unit of this kind. */
 double unit_scale(const char *text, enum unit unit);
 

@@ -85,16 +85,24 @@ static void find_places(size_t *count, size_t n)
 }
 
 /* Puts nodes in the order of their columns, or rows, and otherwise leaves them as they
- * are: those of one lie step apart, and there are n. */
+ * are. */
 static void sort_nodes(struct footprints *f, const struct stress_node *from,
-	struct stress_node *to, size_t step, size_t n)
+	struct stress_node *to, int by_row)
 {
+	size_t n = (size_t)(by_row ? f->par.ny : f->par.nx);
+
 	memset(f->place, 0, n * sizeof *f->place);
 	for (size_t i = 0; i < f->nodes; i++)
-		f->place[from[i].at / step % n]++;
+		f->place[by_row ? from[i].iy : from[i].ix]++;
 	find_places(f->place, n);
 	for (size_t i = 0; i < f->nodes; i++)
-		to[f->place[from[i].at / step % n]++] = from[i];
+		to[f->place[by_row ? from[i].iy : from[i].ix]++] = from[i];
+}
+
+/* Whether one node is before another in the order of the rows. */
+static int is_before(const struct stress_node *a, int iy, int ix)
+{
+	return a->iy < iy || (a->iy == iy && a->ix < ix);
 }
 
 /* The first node of a region, as far as known. */
@@ -115,26 +123,25 @@ static void join(size_t *before, size_t a, size_t b)
 /* Joins each node with those on its left and above it. */
 static void join_nodes(struct footprints *f)
 {
-	size_t nx = (size_t)f->par.nx, above = 0;
+	const struct stress_node *node = f->node, *above = node;
 
 	for (size_t i = 0; i < f->nodes; i++) {
-		size_t at = f->node[i].at;
+		int ix = node[i].ix, iy = node[i].iy;
 
 		f->region[i] = i;
-		if (i > 0 && f->node[i - 1].at + 1 == at && at % nx > 0)
+		if (i > 0 && node[i - 1].iy == iy && node[i - 1].ix == ix - 1)
 			join(f->region, i - 1, i);
-		while (f->node[above].at + nx < at)
+		while (is_before(above, iy - 1, ix))
 			above++;
-		if (f->node[above].at + nx == at)
-			join(f->region, above, i);
+		if (above->iy == iy - 1 && above->ix == ix)
+			join(f->region, (size_t)(above - node), i);
 	}
 }
 
 static void take_node(struct footprints *f, struct footprint *r, struct stress_node n)
 {
 	const struct stress_par *s = &f->par;
-	size_t nx = (size_t)s->nx, row = n.at / nx;
-	double x = (double)(n.at % nx) * s->dx, y = (double)row * s->dy;
+	double x = n.ix * s->dx, y = n.iy * s->dy;
 
 	r->cells++;
 	r->stress = fmax(r->stress, n.value);
@@ -157,9 +164,12 @@ static enum num_status list_regions(struct footprints *f)
 			if (room_for(&f->list, &f->list_room, f->count + 1,
 				    sizeof *f->list))
 				return NUM_MEMORY;
-			f->list[f->count] = (struct footprint){ .first = f->node[i].at,
+			f->list[f->count] = (struct footprint){
+				.first = (size_t)f->node[i].iy * (size_t)f->par.nx +
+					 (size_t)f->node[i].ix,
 				.low = { INFINITY, INFINITY },
-				.high = { -INFINITY, -INFINITY } };
+				.high = { -INFINITY, -INFINITY }
+			};
 			f->region[i] = f->count++;
 		}
 		take_node(f, &f->list[f->region[i]], f->node[i]);
@@ -188,14 +198,14 @@ static enum num_status list_cells(struct footprints *f)
 
 static enum num_status find_regions(struct footprints *f)
 {
-	size_t n = f->nodes + 1, nx = (size_t)f->par.nx;
+	size_t n = f->nodes + 1;
 
 	if (room_for(&f->spare, &f->spare_room, n, sizeof *f->spare) ||
 		room_for(&f->region, &f->region_room, n, sizeof *f->region) ||
 		room_for(&f->cell, &f->cell_room, n, sizeof *f->cell))
 		return NUM_MEMORY;
-	sort_nodes(f, f->node, f->spare, 1, nx);
-	sort_nodes(f, f->spare, f->node, nx, (size_t)f->par.ny);
+	sort_nodes(f, f->node, f->spare, 0);
+	sort_nodes(f, f->spare, f->node, 1);
 	join_nodes(f);
 	return list_regions(f) ? NUM_MEMORY : list_cells(f);
 }
@@ -212,12 +222,10 @@ static int by_size(const void *a, const void *b)
 /* Every other row from right to left, so that neighbours follow each other. */
 static void turn_rows(const struct footprints *f, size_t *cell, size_t n)
 {
-	size_t nx = (size_t)f->par.nx;
-
 	for (size_t i = 0, end; i < n; i = end) {
-		size_t row = f->node[cell[i]].at / nx;
+		int row = f->node[cell[i]].iy;
 
-		for (end = i; end < n && f->node[cell[end]].at / nx == row; end++)
+		for (end = i; end < n && f->node[cell[end]].iy == row; end++)
 			;
 		for (size_t a = i, z = end; row % 2 && a + 1 < z; a++) {
 			size_t swap = cell[a];
@@ -230,7 +238,7 @@ static void turn_rows(const struct footprints *f, size_t *cell, size_t n)
 
 static double reserve_below(const struct footprints *f, struct stress_node n, int k)
 {
-	return reserve(f->yield, point_sum_at(f->below, n.at, k));
+	return reserve(f->yield, point_sum_at(f->below, n.ix, n.iy, k));
 }
 
 /* Takes the reserve g at the next depth z.  Returns the depth at which it has passed 1
@@ -307,6 +315,7 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 
 		r->error = r->area *
 			   sqrt((1 - (double)m / n) * (varies + trend * trend / 12));
+		r->freedom = (double)(m - 1); /* m - 2 differences and the trend */
 	}
 }
 

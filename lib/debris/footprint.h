@@ -24,8 +24,9 @@ struct footprint {
 	size_t first;           /* its first cell in order of y and x */
 	double stress;          /* the largest at the surface, Pa */
 	double volume;          /* m3; nan: deeper than debris.h allows */
-	double error;  /* standard error of the volume by cells left out, m3; 0: none was
-			*/
+	double error;   /* standard error of the volume by cells left out, m3; 0: none was
+			 */
+	double freedom; /* degrees of freedom of that */
 	double change; /* of the volume by a relative one of the stress below it, to first
 			* order, m3 */
 };

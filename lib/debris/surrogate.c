@@ -24,17 +24,6 @@ static const double ROUNDING = 1e-5;
  * 90 % hold 247 with the bound of .9 (1.645) and 280 with that of .95. */
 static const double TAIL = 0.95, TAIL_BOUND = 1.96;
 
-/* Of the logarithm of a volume. */
-static double deviation_of(const struct surrogate *s, const struct footprint *f)
-{
-	return hypot(f->error, s->own * f->change) / f->volume;
-}
-
-static double residual(const struct surrogate_sample *x)
-{
-	return log(x->volume / x->footprint.volume);
-}
-
 static enum part part_of(long place)
 {
 	return place % 5 < 2 ? FIT : place % 5 < 4 ? CALIBRATE : CHECK;
@@ -93,29 +82,56 @@ double surrogate_highest_level(const struct surrogate *s)
 	return 1 - 1.0 / (n + 1);
 }
 
-/* The total of a surface.  The errors of cells left out are independent, those of the
- * sums have a cause in common. */
+/* Some or all regions of a surface.  The errors of cells left out are independent, those
+ * of the sums have a cause in common. */
 struct sum {
-	double volume, squares, change;
+	double volume, squares, fourths, change;
 };
 
 static void add_to(struct sum *sum, const struct footprint *f)
 {
+	double square = f->error * f->error;
+
 	sum->volume += f->volume;
-	sum->squares += f->error * f->error;
+	sum->squares += square;
+	sum->fourths += square > 0 ? square * square / f->freedom : 0;
 	sum->change += f->change;
 }
 
-/* Of the logarithm of a total. */
-static double deviation_of_sum(
-	const struct surrogate *s, const struct sum *sum, double severity)
+/* By how much the 90 % quantile of Student's distribution exceeds that of the normal one
+ * (Abramowitz and Stegun, 26.7.5; 2 % less than it is with three degrees of freedom). */
+static double student(double freedom)
 {
-	return hypot(sqrt(sum->squares), s->shared * severity * sum->change) /
-	       sum->volume;
+	const double x = 1.6449, x2 = x * x;
+
+	return 1 + (x2 + 1) / (4 * freedom) +
+	       ((5 * x2 + 16) * x2 + 3) / (96 * freedom * freedom);
+}
+
+/* Of the logarithm of a volume, in terms of the normal distribution.  The degrees of
+ * freedom of a sum are those of Welch (1947). */
+static double deviation_of(const struct surrogate *s, const struct sum *sum,
+	const struct surrogate_contact *contact)
+{
+	double left_out = 0;
+
+	if (sum->squares > 0)
+		left_out = sqrt(sum->squares) *
+			   student(sum->squares * sum->squares / sum->fourths);
+	return hypot(left_out, s->sums * contact->pressure * sum->change) / sum->volume;
+}
+
+static double deviation_of_one(const struct surrogate *s, const struct footprint *f,
+	const struct surrogate_contact *contact)
+{
+	struct sum sum = { 0 };
+
+	add_to(&sum, f);
+	return deviation_of(s, &sum, contact);
 }
 
 struct loaded {
-	double cells, flowing, pressure, square;
+	double cells, flowing, square;
 };
 
 static struct loaded find_loaded(const double *pressure, size_t cells, double hardness)
@@ -128,10 +144,30 @@ static struct loaded find_loaded(const double *pressure, size_t cells, double ha
 
 		l.cells += p > 0;
 		l.flowing += p > 0 && hardness > 0 && p >= hardness;
-		l.pressure += p;
 		l.square += p * p;
 	}
 	return l;
+}
+
+/* Sums of products of the gradients, in cells. */
+struct gradients {
+	lanes xx, xy, yy;
+};
+
+/* Between two rows. */
+static void add_gradients(
+	const double *p, const double *q, size_t nx, struct gradients *sum)
+{
+	for (size_t x = 0; x + 1 < nx; x += 2) {
+		int n = x + 2 < nx ? 2 : 1;
+		lanes a = lanes_load(p + x, n), b = lanes_load(p + x + 1, n),
+		      c = lanes_load(q + x, n), d = lanes_load(q + x + 1, n);
+		lanes gx = (b + d) - (a + c), gy = (d - b) + (c - a);
+
+		lanes_add(&sum->xx, gx * gx, n);
+		lanes_add(&sum->xy, gx * gy, n);
+		lanes_add(&sum->yy, gy * gy, n);
+	}
 }
 
 struct surrogate_contact surrogate_contact(const struct stress_par *par,
@@ -139,32 +175,14 @@ struct surrogate_contact surrogate_contact(const struct stress_par *par,
 {
 	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 	struct loaded l = find_loaded(pressure, nx * ny, hardness);
-	double xx = 0, xy = 0, yy = 0, sum;
+	struct gradients g = { .xx = { 0 } };
+	double xx, xy, yy, sum;
 
-	for (size_t y = 0; y + 1 < ny; y++) {
-		const double *p = pressure + y * nx, *q = p + nx;
-		size_t a = lanes_next(p, 0, nx), b = lanes_next(q, 0, nx);
-
-		for (size_t x = 1; x < nx; x++) {
-			double gx, gy;
-
-			/* Most of the surface is free: the next loaded cells. */
-			a = a + 1 < x ? lanes_next(p, x - 1, nx) : a;
-			b = b + 1 < x ? lanes_next(q, x - 1, nx) : b;
-			if (x < a && x < b) {
-				x = lesser(a, b) - 1;
-				continue;
-			}
-			gx = (p[x] + q[x]) - (p[x - 1] + q[x - 1]);
-			gy = (q[x] - p[x]) + (q[x - 1] - p[x - 1]);
-			xx += gx * gx;
-			xy += gx * gy;
-			yy += gy * gy;
-		}
-	}
-	xx /= par->dx * par->dx;
-	xy /= par->dx * par->dy;
-	yy /= par->dy * par->dy;
+	for (size_t y = 0; y + 1 < ny; y++)
+		add_gradients(pressure + y * nx, pressure + (y + 1) * nx, nx, &g);
+	xx = (g.xx[0] + g.xx[1]) / (par->dx * par->dx);
+	xy = (g.xy[0] + g.xy[1]) / (par->dx * par->dy);
+	yy = (g.yy[0] + g.yy[1]) / (par->dy * par->dy);
 	sum = xx + yy > 0 ? xx + yy : 1;
 	return (struct surrogate_contact){
 		.property = { [SURROGATE_FLOW] = l.cells > 0 ? l.flowing / l.cells : 0,
@@ -172,7 +190,7 @@ struct surrogate_contact surrogate_contact(const struct stress_par *par,
 			[SURROGATE_OBLIQUE] = 2 * fabs(xy) / sum,
 			[SURROGATE_FRICTION] = fabs(par->mu),
 			[SURROGATE_POISSON] = par->nu },
-		.severity = l.pressure > 0 ? l.square / (l.pressure * yield) : 0,
+		.pressure = sqrt(l.square / (double)(nx * ny)) / yield,
 	};
 }
 
@@ -206,13 +224,13 @@ int surrogate_guess(const struct surrogate *s, const struct footprint *footprint
 	if (count == 0)
 		return 1;
 	for (size_t i = 0; i < count; i++) {
-		guess[i] = guess_of(
-			footprint[i].volume, one * deviation_of(s, &footprint[i]));
+		guess[i] = guess_of(footprint[i].volume,
+			one * deviation_of_one(s, &footprint[i], contact));
 		add_to(&sum, &footprint[i]);
 	}
 	if (!isfinite(sum.volume))
 		return 0;
-	*total = guess_of(sum.volume, all * deviation_of_sum(s, &sum, contact->severity));
+	*total = guess_of(sum.volume, all * deviation_of(s, &sum, contact));
 	return 1;
 }
 
@@ -237,42 +255,27 @@ static double total_error(const struct surrogate *s, const struct surrogate_samp
 		truth += x[i].volume;
 		add_to(&sum, &x[i].footprint);
 	}
-	*deviation = deviation_of_sum(s, &sum, x->contact.severity);
+	*deviation = deviation_of(s, &sum, &x->contact);
 	return log(truth / sum.volume);
 }
 
-static double spread_of(double *error, size_t n)
+/* How far the sums are off: from the regions of which every cell was measured. */
+static double find_sums(
+	const struct surrogate_sample *sample, const char *part, size_t n, double *error)
 {
-	qsort(error, n, sizeof *error, ascending);
-	return fmax(ROUNDING, n > 0 ? error[(size_t)(TAIL * (double)n)] / TAIL_BOUND : 0);
-}
+	size_t count = 0;
 
-/* How far the sums are off: from the regions of which every cell was measured, and from
- * those of a surface together. */
-static void find_sums(const struct surrogate_sample *sample, const char *part, size_t n,
-	struct surrogate *s, double *own, double *shared)
-{
-	size_t regions = 0, surfaces = 0, end;
+	for (size_t i = 0; i < n; i++) {
+		const struct surrogate_sample *x = &sample[i];
+		const struct footprint *f = &x->footprint;
 
-	for (size_t i = 0; i < n; i = end) {
-		double error = 0, change = 0;
-
-		end = surface_end(sample, n, i);
-		for (size_t k = i; k < end && part[i] == FIT; k++) {
-			const struct footprint *f = &sample[k].footprint;
-
-			if (f->error > 0 || !(f->change > 0))
-				continue;
-			error += sample[k].volume - f->volume;
-			change += f->change;
-			own[regions++] = fabs(sample[k].volume - f->volume) / f->change;
-		}
-		if (change > 0)
-			shared[surfaces++] =
-				fabs(error) / (change * sample[i].contact.severity);
+		if (part[i] == FIT && f->error == 0 && f->change > 0)
+			error[count++] = fabs(x->volume - f->volume) /
+					 (f->change * x->contact.pressure);
 	}
-	s->own = spread_of(own, regions);
-	s->shared = spread_of(shared, surfaces);
+	qsort(error, count, sizeof *error, ascending);
+	return fmax(ROUNDING,
+		count > 0 ? error[(size_t)(TAIL * (double)count)] / TAIL_BOUND : 0);
 }
 
 static void calibrate(const struct surrogate_sample *sample, const char *part, size_t n,
@@ -282,8 +285,10 @@ static void calibrate(const struct surrogate_sample *sample, const char *part, s
 
 	for (size_t i = 0; i < n; i++)
 		if (part[i] == CALIBRATE)
-			score[count++] = fabs(residual(&sample[i])) /
-					 deviation_of(s, &sample[i].footprint);
+			score[count++] =
+				fabs(log(sample[i].volume / sample[i].footprint.volume)) /
+				deviation_of_one(
+					s, &sample[i].footprint, &sample[i].contact);
 	s->particles = keep_scores(score, count, s->particle);
 	count = 0;
 	for (size_t i = 0; i < n; i = end) {
@@ -324,7 +329,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 	struct surrogate *s, struct surrogate_report *report)
 {
 	char *part = malloc(n + 1);
-	double *score = malloc((2 * n + 1) * sizeof *score);
+	double *score = malloc((n + 1) * sizeof *score);
 	size_t end;
 	long place = 0;
 
@@ -346,7 +351,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 	}
 	if (place >= LEAST) {
 		find_range(sample, part, n, s);
-		find_sums(sample, part, n, s, score, score + n);
+		s->sums = find_sums(sample, part, n, score);
 		calibrate(sample, part, n, s, score);
 		check(sample, part, n, s, report);
 	}

@@ -2,8 +2,9 @@
  *
  * A volume of footprint.h is off by cells left out, of which it states the standard
  * error, and by the direct sums below the others; it states how the volume changes with
- * the stress.  How far the sums are off, and the quantiles of the errors over both
- * together, come from surfaces of the full model.
+ * the stress.  The sums are off in proportion to the root mean square pressure, since
+ * errors of loads far apart are independent.  How far they are, and the quantiles of the
+ * errors over both together, come from surfaces of the full model.
  * Intervals are conformal: the stated shares of particles and surfaces not used in the
  * fit lie within them for any distribution of the errors, provided that scenes are drawn
  * like those of the fit.  There is no estimate where a property of the contact is outside
@@ -39,14 +40,12 @@ extern const char *const surrogate_property_names[SURROGATE_PROPERTIES];
 
 struct surrogate_contact {
 	double property[SURROGATE_PROPERTIES];
-	double severity; /* mean pressure, over the load, over the yield stress */
+	double pressure; /* root mean square, of all cells, over the yield stress */
 };
 
 struct surrogate {
 	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
-	/* Standard deviations of the direct sums: below a particle, over the yield
-	 * stress; what those of a surface have in common, over the mean pressure. */
-	double own, shared;
+	double sums; /* standard deviation of the direct sums, over that pressure */
 	/* Ascending: |ln(true / estimated volume)| / deviation, of the particles and
 	 * surfaces held back for it. */
 	int particles, totals;

@@ -20,6 +20,12 @@ enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a ta
 static const char promise[] = "# stream: " ENDS_PROMISE "\n";
 static const char end_line[] = "# end: ";
 
+/* What a cell is multiplied by: by shifting its text where that is 10^ten, ten not 0. */
+struct scale {
+	double factor;
+	int ten;
+};
+
 struct table_in {
 	struct input *in;
 	const char *name;
@@ -27,8 +33,8 @@ struct table_in {
 	size_t room, most, most_keys;
 	long number; /* of that line, from 1 */
 	int ncolumns;
-	char **column; /* names */
-	double *scale; /* factor of table_number(), NULL for 1 */
+	char **column;       /* names */
+	struct scale *scale; /* of table_number(), or NULL */
 	char **cell;
 	const char *blanks; /* separator of the cells */
 	int headed;         /* the table has a line of names */
@@ -451,17 +457,25 @@ double table_number(const struct table_in *t, int column)
 			is_comma_decimal(t->cell[column])
 				? ": 'sigconvert --output table' reads decimal commas"
 				: "");
-	return t->scale ? v * t->scale[column] : v;
+	if (!t->scale)
+		return v;
+	if (t->scale[column].ten != 0 && isfinite(v))
+		return decimal_shift(
+			t->cell[column], strlen(t->cell[column]), t->scale[column].ten);
+	return v * t->scale[column].factor;
 }
 
 void table_set_scale(struct table_in *t, int column, double scale)
 {
+	int ten = scale > 0 ? (int)lround(log10(scale)) : 0;
+
 	if (!t->scale) {
 		t->scale = xcalloc((size_t)t->ncolumns, sizeof *t->scale);
 		for (int i = 0; i < t->ncolumns; i++)
-			t->scale[i] = 1;
+			t->scale[i].factor = 1;
 	}
-	t->scale[column] = scale;
+	t->scale[column] =
+		(struct scale){ scale, decimal_shift("1", 1, ten) == scale ? ten : 0 };
 }
 
 double table_positive(const struct table_in *t, int column)

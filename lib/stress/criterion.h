@@ -26,6 +26,9 @@ enum stress_number {
 struct stress_criterion {
 	const char *name;
 	double (*value)(const double number[STRESS_DEVIATOR]);
+	/* Of count stresses, given by rows of each number. */
+	void (*row)(
+		const double *const number[STRESS_DEVIATOR], int count, double *value);
 	double norm; /* value <= norm times the Frobenius norm of the tensor */
 };
 

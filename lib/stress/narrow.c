@@ -14,6 +14,9 @@
  * the same time within 2 %. */
 enum { SQUARE = 8, CLOSE = 10, GAP = 4 };
 
+/* Nodes close to a load in a row, filled up to whole vectors. */
+enum { ACROSS = (2 * CLOSE + 1 + 7) / 8 * 8 };
+
 /* Of sums of up to a thousand loads in single precision. */
 static const double ROUNDING = 1e-4;
 
@@ -28,7 +31,10 @@ struct narrowing {
 	size_t *row;       /* the first load of each row, and the end */
 	int nx, ny, apart; /* squares; between those in reach of each other */
 	double *ring;      /* of each square: the bound for loads that are not close */
-	float *close; /* of the nodes of a row of squares: the sum for those that are */
+	/* Of the nodes of a row of squares, the first of each row at CLOSE: the sum for
+	 * those that are; what one of them adds on each row. */
+	float *close, size[2 * CLOSE + 1][ACROSS];
+	size_t stride;
 	struct stress_span *span;
 	size_t load_room, span_room, count;
 };
@@ -101,42 +107,41 @@ static enum num_status bound_rings(struct narrowing *w)
 	return most && sum ? NUM_OK : NUM_MEMORY;
 }
 
-/* to += w from */
-static void add_row(float *to, const float *from, float w, int count)
-{
-	int i = 0;
-
-	for (; i + 3 < count; i += 4) {
-		four a, b;
-
-		memcpy(&a, to + i, sizeof a);
-		memcpy(&b, from + i, sizeof b);
-		a += w * b;
-		memcpy(to + i, &a, sizeof a);
-	}
-	for (; i < count; i++)
-		to[i] += w * from[i];
-}
-
-/* The sums for the rows [y0, y1). */
-static void add_close(struct narrowing *w, int y0, int y1)
+/* What a unit load adds to the rows of nodes close to it. */
+static void know_close(struct narrowing *w)
 {
 	const struct narrow *n = w->n;
 	int width = 2 * n->reach + 1;
 
-	memset(w->close, 0, (size_t)n->wx * SQUARE * sizeof *w->close);
-	for (int y = larger_int(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, n->wy); y++)
+	for (int j = -CLOSE; j <= CLOSE; j++)
+		memcpy(w->size[j + CLOSE],
+			n->size + (j + n->reach) * width + n->reach - CLOSE,
+			(2 * CLOSE + 1) * sizeof(float));
+}
+
+/* The sums for the rows [y0, y1). */
+LANES_CLONES static void add_close(struct narrowing *w, int y0, int y1)
+{
+	memset(w->close, 0, w->stride * SQUARE * sizeof *w->close);
+	for (int y = larger_int(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, w->n->wy); y++)
 		for (size_t k = w->row[y]; k < w->row[y + 1]; k++) {
-			int x = w->load[k].x, left = larger_int(x - CLOSE, 0),
-			    right = lesser_int(x + CLOSE + 1, n->wx);
+			float load = (float)w->load[k].value;
 
 			for (int v = larger_int(y - CLOSE, y0); v <= y + CLOSE && v < y1;
-				v++)
-				add_row(w->close + (size_t)(v - y0) * (size_t)n->wx +
-						left,
-					n->size + (v - y + n->reach) * width + left - x +
-						n->reach,
-					(float)w->load[k].value, right - left);
+				v++) {
+				const float *from = w->size[v - y + CLOSE];
+				float *to = w->close + (size_t)(v - y0) * w->stride +
+					    w->load[k].x;
+
+				for (int i = 0; i < ACROSS; i += 8) {
+					eight a, b;
+
+					memcpy(&a, to + i, sizeof a);
+					memcpy(&b, from + i, sizeof b);
+					a += load * b;
+					memcpy(to + i, &a, sizeof a);
+				}
+			}
 		}
 }
 
@@ -160,7 +165,7 @@ static enum num_status narrow_piece(
 	struct narrowing *w, int y, int begin, int end, double rest)
 {
 	const struct narrow *n = w->n;
-	const float *close = w->close + (size_t)(y % SQUARE) * (size_t)n->wx;
+	const float *close = w->close + (size_t)(y % SQUARE) * w->stride + CLOSE;
 
 	for (int x = begin; x < end; x++) {
 		int first = x;
@@ -228,12 +233,14 @@ enum num_status narrow_spans(const struct narrow *n, const struct stress_span *f
 	struct narrowing w = { .n = n,
 		.nx = (n->wx + SQUARE - 1) / SQUARE,
 		.ny = (n->wy + SQUARE - 1) / SQUARE,
-		.apart = (n->reach + SQUARE - 1) / SQUARE };
+		.apart = (n->reach + SQUARE - 1) / SQUARE,
+		.stride = (size_t)n->wx + ACROSS };
 	enum num_status status = NUM_MEMORY;
 
 	w.row = malloc(((size_t)n->wy + 1) * sizeof *w.row);
 	w.ring = calloc((size_t)w.nx * (size_t)w.ny, sizeof *w.ring);
-	w.close = malloc((size_t)n->wx * SQUARE * sizeof *w.close);
+	w.close = malloc(w.stride * SQUARE * sizeof *w.close);
+	know_close(&w);
 	if (w.row && w.ring && w.close && !list_loads(&w) && !bound_rings(&w))
 		status = narrow_rows(&w, from, count);
 	free(w.load);

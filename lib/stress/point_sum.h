@@ -23,8 +23,8 @@ void point_sum_load(struct point_sum *s, const double *pressure);
 double point_sum_depth(const struct point_sum *s, int k);
 /* The last depth that is not below z; 0 where none is. */
 int point_sum_above(const struct point_sum *s, double z);
-/* Below the centre of a cell (y * nx + x), at the depth k >= 0.  What depths have in
- * common is found once for calls that follow each other. */
-double point_sum_at(struct point_sum *s, size_t cell, int k);
+/* Below the centre of a cell, at the depth k >= 0.  What depths have in common is found
+ * once for calls that follow each other. */
+double point_sum_at(struct point_sum *s, int ix, int iy, int k);
 
 #endif

@@ -1,6 +1,7 @@
 #include "stress/stress.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include "num/status.h"
 #include "stress/free_sum.h"
 #include "stress/influence.h"
@@ -441,36 +442,53 @@ struct take {
 	atomic_size_t found;
 };
 
-/* The numbers of a node of a span. */
-static inline void node_numbers(const struct take *t, const struct stress_span *span,
-	int x, const double *const number[STRESS_NUMBERS], int numbers,
-	double v[STRESS_NUMBERS])
-{
-	const struct stress *s = t->s;
-	int known = t->on_surface ? SURFACE_NUMBERS : numbers;
-	double p;
+/* Nodes whose equivalent stress is found together. */
+enum { ROW = 64 };
 
-	for (int c = 0; c < known; c++)
-		v[c] = number[c][x - span->begin];
-	if (!t->on_surface)
-		return;
-	p = s->given[(size_t)span->y * (size_t)s->par.nx + (size_t)x] / s->unit;
-	v[DEV_XZ] = s->par.axis == 0 ? -s->par.mu * p : 0;
-	v[DEV_YZ] = s->par.axis == 1 ? -s->par.mu * p : 0;
-	v[DEV_ZZ] = -p;
+/* The tractions along x and y on loaded cells of a row of the surface, from x on. */
+static void tractions(
+	const struct stress *s, int x, int y, int count, double *xz, double *yz)
+{
+	const double *p = s->given + (size_t)y * (size_t)s->par.nx + x;
+	double along_x = s->par.axis == 0 ? -s->par.mu : 0,
+	       along_y = s->par.axis == 1 ? -s->par.mu : 0;
+
+	for (int i = 0; i < count; i++) {
+		xz[i] = along_x * (p[i] / s->unit);
+		yz[i] = along_y * (p[i] / s->unit);
+	}
+}
+
+/* Equivalent stresses, in units, of at most ROW nodes of a span, from x on. */
+static void equivalent_row(const struct take *t, const struct stress_span *span, int x,
+	int count, const double *const number[STRESS_NUMBERS], double *value)
+{
+	const double *v[STRESS_DEVIATOR];
+	double xz[ROW], yz[ROW];
+
+	for (int c = 0; c < (t->on_surface ? (int)SURFACE_NUMBERS : (int)STRESS_DEVIATOR);
+		c++)
+		v[c] = number[c] + (x - span->begin);
+	if (t->on_surface) {
+		tractions(t->s, x, span->y, count, xz, yz);
+		v[DEV_XZ] = xz;
+		v[DEV_YZ] = yz;
+	}
+	t->s->criterion->row(v, count, value);
 }
 
 static void take_equivalent(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS])
 {
 	const struct take *t = context;
-	double *out = t->out + (size_t)span->y * (size_t)t->s->par.nx;
+	double *out = t->out + (size_t)span->y * (size_t)t->s->par.nx, value[ROW];
 
-	for (int x = span->begin; x < span->end; x++) {
-		double v[STRESS_NUMBERS];
+	for (int x = span->begin; x < span->end; x += ROW) {
+		int count = lesser_int(ROW, span->end - x);
 
-		node_numbers(t, span, x, number, STRESS_DEVIATOR, v);
-		out[x] = t->s->unit * t->s->criterion->value(v);
+		equivalent_row(t, span, x, count, number, value);
+		for (int i = 0; i < count; i++)
+			out[x + i] = t->s->unit * value[i];
 	}
 }
 
@@ -478,16 +496,23 @@ static void take_above(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS])
 {
 	struct take *t = context;
-	size_t row = (size_t)span->y * (size_t)t->s->par.nx;
+	double value[ROW];
 
-	for (int x = span->begin; x < span->end; x++) {
-		double v[STRESS_NUMBERS], value;
+	for (int x = span->begin; x < span->end; x += ROW) {
+		int count = lesser_int(ROW, span->end - x), above = 0;
+		struct stress_node *to;
 
-		node_numbers(t, span, x, number, SURFACE_NUMBERS, v);
-		value = t->s->unit * t->s->criterion->value(v);
-		if (value > t->limit)
-			t->node[atomic_fetch_add(&t->found, 1)] =
-				(struct stress_node){ row + (size_t)x, value };
+		equivalent_row(t, span, x, count, number, value);
+		for (int i = 0; i < count; i++) {
+			value[i] *= t->s->unit;
+			above += value[i] > t->limit;
+		}
+		if (above == 0)
+			continue;
+		to = t->node + atomic_fetch_add(&t->found, (size_t)above);
+		for (int i = 0; i < count; i++)
+			if (value[i] > t->limit)
+				*to++ = (struct stress_node){ x + i, span->y, value[i] };
 	}
 }
 
@@ -506,7 +531,15 @@ static void take_tensor(void *context, const struct stress_span *span,
 	for (int x = span->begin; x < span->end; x++) {
 		double v[STRESS_NUMBERS];
 
-		node_numbers(t, span, x, number, STRESS_NUMBERS, v);
+		for (int c = 0;
+			c < (t->on_surface ? (int)SURFACE_NUMBERS : STRESS_NUMBERS); c++)
+			v[c] = number[c][x - span->begin];
+		if (t->on_surface) {
+			size_t at = (size_t)span->y * nx + (size_t)x;
+
+			tractions(t->s, x, span->y, 1, &v[DEV_XZ], &v[DEV_YZ]);
+			v[DEV_ZZ] = -(t->s->given[at] / t->s->unit);
+		}
 		v[DEV_X] += v[DEV_ZZ];
 		v[DEV_Y] += v[DEV_ZZ];
 		for (int c = 0; c < STRESS_NUMBERS; c++)

@@ -85,7 +85,7 @@ enum num_status stress_at(struct stress *s, double z, const struct stress_span *
 /* The nodes of the spans where it exceeds limit on the surface, in any order; node has
  * room for all that the spans hold. */
 struct stress_node {
-	size_t at; /* iy * nx + ix */
+	int ix, iy;
 	double value;
 };
 enum num_status stress_above(struct stress *s, double limit,

@@ -265,37 +265,39 @@ static int list_near(const struct tiling *t, const struct few *few, int first, i
 	return count;
 }
 
-static void put_nodes(double *node, lanes a, lanes b, int nodes)
+static inline void put_nodes(double *node, const lanes4 *sum, int nodes)
 {
-	lanes_store(node, a, nodes > 1 ? 2 : 1);
-	if (nodes > 2)
-		lanes_store(node + 2, b, nodes > 3 ? 2 : 1);
+	if (nodes == TOGETHER)
+		memcpy(node, sum, sizeof *sum);
+	else
+		for (int i = 0; i < nodes; i++)
+			node[i] = (*sum)[i];
 }
 
 /* Sums of three numbers, which the processor adds side by side: for the first nodes of
  * those together. */
-static void add_near(const struct tiling *t, const struct near *near, int count,
-	const int c[3], double *node, int nodes)
+LANES_CLONES static void add_near(const struct tiling *t, const struct near *near,
+	int count, const int c[3], double *node, int nodes)
 {
 	size_t size = table_size(t);
-	lanes a0 = lanes_all(0), a1 = a0, b0 = a0, b1 = a0, c0 = a0, c1 = a0;
+	size_t at0 = (size_t)c[0] * size, at1 = (size_t)c[1] * size,
+	       at2 = (size_t)c[2] * size;
+	lanes4 sum0 = { 0 }, sum1 = { 0 }, sum2 = { 0 }, add0, add1, add2;
 
 	for (int i = 0; i < count; i++) {
-		const double *a = near[i].table + (size_t)c[0] * size;
-		const double *b = near[i].table + (size_t)c[1] * size;
-		const double *d = near[i].table + (size_t)c[2] * size;
+		const double *from = near[i].table;
 		double load = near[i].load;
 
-		a0 += load * lanes_load(a, 2);
-		a1 += load * lanes_load(a + 2, 2);
-		b0 += load * lanes_load(b, 2);
-		b1 += load * lanes_load(b + 2, 2);
-		c0 += load * lanes_load(d, 2);
-		c1 += load * lanes_load(d + 2, 2);
+		memcpy(&add0, from + at0, sizeof add0);
+		memcpy(&add1, from + at1, sizeof add1);
+		memcpy(&add2, from + at2, sizeof add2);
+		sum0 += load * add0;
+		sum1 += load * add1;
+		sum2 += load * add2;
 	}
-	put_nodes(node + (size_t)c[0] * t->room, a0, a1, nodes);
-	put_nodes(node + (size_t)c[1] * t->room, b0, b1, nodes);
-	put_nodes(node + (size_t)c[2] * t->room, c0, c1, nodes);
+	put_nodes(node + (size_t)c[0] * t->room, &sum0, nodes);
+	put_nodes(node + (size_t)c[1] * t->room, &sum1, nodes);
+	put_nodes(node + (size_t)c[2] * t->room, &sum2, nodes);
 }
 
 /* Adds the loads [first, end) to a run of nodes; node: its row of the first number. */

@@ -211,7 +211,8 @@ int main(int argc, char **argv)
 	for (int i = 0; i < balls.n; i++)
 		read_balls(&p, balls.v[i], i);
 	if (p.n < 3)
-		die(EXIT_RUN, "%zu pulses are too few to estimate their scatter", p.n);
+		die(EXIT_RUN, "want at least 3 pulses to estimate their scatter, got %zu",
+			p.n);
 	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
 	x = xcalloc(p.n, sizeof *x);
 	y = xcalloc(p.n, sizeof *y);

@@ -41,8 +41,7 @@ void surrogate_write(
 		put(t, "least", surrogate_property_names[k], s->least[k]);
 		put(t, "most", surrogate_property_names[k], s->most[k]);
 	}
-	put(t, "deviation", "own", s->own);
-	put(t, "deviation", "shared", s->shared);
+	put(t, "deviation", "sums", s->sums);
 	put_numbered(t, "particle", s->particle, s->particles);
 	put_numbered(t, "total", s->total, s->totals);
 	table_done(t);
@@ -56,10 +55,8 @@ static double *place_of(
 		if (!strcmp(name, surrogate_property_names[k]) &&
 			(!strcmp(kind, "least") || !strcmp(kind, "most")))
 			return &(kind[0] == 'l' ? s->least : s->most)[k];
-	if (!strcmp(kind, "deviation") && !strcmp(name, "own"))
-		return &s->own;
-	if (!strcmp(kind, "deviation") && !strcmp(name, "shared"))
-		return &s->shared;
+	if (!strcmp(kind, "deviation") && !strcmp(name, "sums"))
+		return &s->sums;
 	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
 		return s->particle + s->particles++;
 	if (!strcmp(kind, "total") && s->totals < SURROGATE_SCORES)
@@ -96,7 +93,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(a);
 		rows++;
 	}
-	if (rows != 2L * SURROGATE_PROPERTIES + 2 + s->particles + s->totals)
+	if (rows != 2L * SURROGATE_PROPERTIES + 1 + s->particles + s->totals)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);

@@ -83,6 +83,10 @@ void groups_finish(struct groups *g, double period, double duration, double last
 	if (isnan(period) || (!isnan(duration) && end > g->reported))
 		groups_report(g, g->reported, end, isnan(period));
 	else if (isnan(duration)) {
+		if (g->reported == 0)
+			warn("no period of %g s is complete: the last particle is at %g s; "
+			     "--duration tells when the record ends",
+				period, last);
 		note("particles after %g s belong to an incomplete period and are left out",
 			g->reported);
 		stats_set("periods_left_out", 1);

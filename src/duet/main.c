@@ -79,7 +79,7 @@ static int is_mixture(void)
 
 static void check_options(void)
 {
-	if (spacing > 10)
+	if (spacing > 10 && opt_given_bare("spacing"))
 		warn("--spacing %g m: numbers without a unit are metres: is %gmm meant?",
 			spacing, spacing);
 	if (method != METHOD_DUET &&

@@ -107,6 +107,10 @@ static void check_options(void)
 	if (best && isnan(extent))
 		die(EXIT_USAGE, "--best %ld requires --extent, the available length",
 			best);
+	if (diameter >= bore)
+		die(EXIT_USAGE,
+			"--diameter: a particle of %g m does not fit a bore of %g m",
+			diameter, bore);
 	if (isnan(snr))
 		die(EXIT_USAGE,
 			"--snr is missing: peak of a 100 um particle over the noise, dB");

@@ -122,7 +122,7 @@ static void doubt(const struct rough_par *par)
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
 	/* Areal instruments measure no field of 100 mm. */
-	if (length.v[0] >= 0.1)
+	if (length.v[0] >= 0.1 && opt_given_bare("length"))
 		warn("--length %g m: numbers without a unit are metres: is %gmm meant?",
 			length.v[0], length.v[0]);
 	if (corr.n && (p->corr_x < dx || p->corr_y < dy))

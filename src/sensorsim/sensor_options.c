@@ -127,10 +127,10 @@ void sensors_check(void)
 	if (rate * sensors_pulse() < 4)
 		warn("--rate %g Hz: a pulse of %.3g s has fewer than four samples", rate,
 			sensors_pulse());
-	if (noise >= 1 && !coil.n && !opt_given("gain"))
+	if (noise >= 1 && opt_given_bare("noise") && !coil.n && !opt_given("gain"))
 		warn("--noise %g V: numbers without a unit are volts: is %gmV meant?",
 			noise, noise);
-	if (spacing > 10)
+	if (spacing > 10 && opt_given_bare("spacing"))
 		warn("--spacing %g m: numbers without a unit are metres: is %gmm meant?",
 			spacing, spacing);
 	check_lines("mains", &mains, mains_frequency, 2);

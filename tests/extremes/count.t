@@ -68,4 +68,13 @@ ballcal --balls same.tsv:1mm --balls eight.tsv:2mm >cal.tsv 2>err
 scene "no scatter at all" "exponent 3" 3 1e-12 "$(awk '$1 == "exponent" { printf "%.15g", $2 }' cal.tsv)"
 balls 1 0 1 >dead.tsv
 refused "a pulse without amplitude" 1 'amplitude is 0' ballcal --balls dead.tsv:1mm
+balls 1 1 >two.tsv
+refused "two pulses" 1 'at least 3 pulses' ballcal --balls two.tsv:1mm
+# The record ends with its last particle, before the end of the first period.
+debriscount --period 1h one.tsv >out 2>err
+is "a period longer than the record | no row, one line | $(grep -c '^[0-9]' out) $(grep -c 'no period of 3600 s is complete' err) | none" \
+	"$(grep -c '^[0-9]' out) $(grep -c 'no period of 3600 s is complete' err)" "0 1"
+debriscount --period 1h --duration 2h one.tsv >out 2>err
+is "the same with a duration of two periods | two rows | $(grep -c '^[0-9]' out) | none" \
+	"$(grep -c '^[0-9]' out) $(wc -l <err | tr -d ' ')" "2 0"
 done_testing

@@ -45,6 +45,8 @@ scene "the 1/100 law, almost a plug" "alone as in a plug" 1 2e-3 "$(
 scene "8 coils, best positions" "four at each end" 4 0 "$(
 	layout --best 8 --extent 1m --least-unique 0 --snr 40dB --arrivals 1 >out
 	column coils out | tr ',' '\n' | grep -c '^1$')"
+refused "a particle twice as large as the bore" 2 'does not fit' \
+	layout $two --snr 40dB --diameter 2cm --bore 1cm
 refused "a rate of 0.1 Hz" 2 'want 1' layout $two --snr 40dB --rate 0.1Hz
 refused "a coil 2 km away" 2 'beyond 1000 m' layout --coils 0,2000 --snr 40dB --arrivals 1
 refused "a coil position that is not a number" 2 'want positions' layout --coils 0,nan --snr 40dB --arrivals 1

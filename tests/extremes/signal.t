@@ -201,6 +201,8 @@ scene "mur 1e5, radius of 1e-4 skin depths" "phase of ferrous particles" 0 0.02 
 	phase 100e-6 10mV --mur 1e5 --sigma 5.8e7 --excitation 1.747e-7Hz)"
 scene "mur 1e5, radius of 1e4 skin depths" "its phase" 0 0.02 "$(
 	phase 5e-3 10mV --calibration 1e6 --mur 1e5 --sigma 1e9 --excitation 40.5Hz)"
+printf 'time\tdiameter\tvelocity\n0.1\t1e-4\t1e300\n' >fast.tsv
+refused "a particle of 1e300 m/s" 1 "100 times" sensorsim --duration 1s fast.tsv
 scene "mur 1, radius of 1e4 skin depths" "phase: half a turn" 0 0.02 "$(
 	phase 5e-3 5mV --calibration 1e6 --mur 1 --sigma 1e9 --excitation 4.05MHz)"
 scene "mur 1, radius of 1e4 skin depths" "none of 20 is ferrous" 0 0 "$(column class found.tsv | grep -c '^ferrous')"

@@ -321,6 +321,77 @@ static void test_no_wear(void)
 	}
 }
 
+/* Whether a reading is rounded to the nearest level or down, it stays wrong by the same
+ * share of a level: no number of rows makes the time of the passage more certain. */
+static void test_readings_rounded_down(void)
+{
+	enum { LEVELS = 16 };
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	double life[DRAWS];
+	int late = 0, early = 0, rows = 0;
+
+	for (int n = 100; n <= 200; n += 50) {
+		struct bank *b = bank_new(&par);
+
+		for (int k = 0; k < n; k++) {
+			double y = LEVELS * (double)k / n + 0.1 * draw_normal(d);
+
+			bank_add(b, k, floor(y) / LEVELS);
+			if (k < 0.88 * n)
+				continue;
+			bank_draw(b, chances, k, 1, life);
+			sort_numbers(life, DRAWS);
+			late += metric_quantile(life, DRAWS, 0.05) > n - k;
+			early += metric_quantile(life, DRAWS, 0.95) < n - k;
+			rows++;
+		}
+		bank_free(b);
+	}
+	ok(late <= 0.1 * rows && early <= 0.1 * rows,
+		"readings that are rounded down end within the interval");
+	bank_chances_free(chances);
+	draw_free(d);
+}
+
+/* Largest difference between the lives on two clocks, relative, over n rows. */
+static double difference_of_clocks(int n, double origin, double unit)
+{
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct bank *here = bank_new(&par), *there = bank_new(&par);
+	double a[DRAWS], b[DRAWS], most = 0;
+
+	for (int k = 0; k < n; k++) {
+		double y = (double)k / n + 0.01 * draw_normal(d);
+
+		bank_add(here, k, y);
+		bank_add(there, origin + unit * k, y);
+		if (!bank_ready(here))
+			continue;
+		bank_draw(here, chances, k, 1, a);
+		bank_draw(there, chances, origin + unit * k, 1, b);
+		for (int i = 0; i < DRAWS; i++)
+			if (a[i] * unit != b[i])
+				most = fmax(most, fabs(a[i] * unit / b[i] - 1));
+	}
+	bank_free(here);
+	bank_free(there);
+	bank_chances_free(chances);
+	draw_free(d);
+	return most;
+}
+
+static void test_clock(void)
+{
+	double most = difference_of_clocks(140, 1000, 1.1);
+
+	ok(most > 0 && most < 1e-6,
+		"the clock's unit and origin change no life by more than rounding");
+}
+
 static void test_disturbances(void)
 {
 	double plain = median_life(60, as_it_is, 0, 0);
@@ -491,13 +562,68 @@ static void test_bursts(void)
 
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
+static const struct adaptive_par default_filter = { .filter = { 300, 0,
+							    RESAMPLE_SYSTEMATIC, 0.5, 0 },
+	.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
+	.process = NAN,
+	.noise = NAN,
+	.seed = 1 };
+
+/* No exponential passes through 0.  A state is within 20 times the noise of its reading,
+ * 0.6, or the particles are drawn from the readings; half as much again for the estimate
+ * of the noise. */
+static void test_passage_through_zero(void)
+{
+	struct draw *d = draw_new(6, 0, RNG_NOISE);
+	double farthest = 0;
+
+	for (int path = 0; path < 12; path++) {
+		struct adaptive *a = adaptive_new(&default_filter);
+
+		for (int k = 0; k < 40; k++) {
+			double y = 3 - (path % 2 ? 0.5 * k : 0.02 * k * k) +
+				   0.03 * draw_normal(d);
+			struct adaptive_row r;
+
+			adaptive_step(a, k, y, &r);
+			farthest = fmax(farthest, fabs(r.state - y));
+		}
+		adaptive_free(a);
+	}
+	ok(farthest > 0.01 && farthest < 0.9,
+		"the filter follows a series through zero: %.3g off at most", farthest);
+	draw_free(d);
+}
+
+/* No curve through a step has to do with the values before and after it: a forecast is at
+ * most grey_reach() times the newest value of the fit, e^4 in one row. */
+static void test_forecast_after_step(void)
+{
+	struct draw *d = draw_new(6, 0, RNG_NOISE);
+	double farthest = 0;
+
+	for (int path = 0; path < 6; path++) {
+		struct adaptive *a = adaptive_new(&default_filter);
+
+		for (int k = 0; k < 100; k++) {
+			double y = (k < 50 ? 0 : 100) + 0.1 * draw_normal(d);
+			struct adaptive_row r;
+
+			adaptive_step(a, k, y, &r);
+			if (k > 0)
+				farthest = fmax(
+					farthest, fmax(fabs(r.grey), fabs(r.prediction)));
+		}
+		adaptive_free(a);
+	}
+	ok(farthest > 99 && farthest < 100 * exp(4),
+		"forecasts after a step are within reach: %.4g at most", farthest);
+	draw_free(d);
+}
+
 static void test_adaptive(void)
 {
-	struct adaptive_par par = { .filter = { 300, 0, RESAMPLE_SYSTEMATIC, 0.5, 0 },
-		.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
-		.process = NAN,
-		.noise = NAN,
-		.seed = 1 };
+	const struct adaptive_par par = default_filter;
 	struct adaptive *a = adaptive_new(&par), *b = adaptive_new(&par);
 	struct draw *d = draw_new(6, 0, RNG_NOISE);
 	struct adaptive_row r, s;
@@ -659,6 +785,8 @@ int main(void)
 	test_orders();
 	test_runin();
 	test_straight_wear();
+	test_readings_rounded_down();
+	test_clock();
 	test_disturbances();
 	test_no_wear();
 	test_few_rows();
@@ -668,5 +796,7 @@ int main(void)
 	test_fleet();
 	test_bursts();
 	test_adaptive();
+	test_passage_through_zero();
+	test_forecast_after_step();
 	return tap_done();
 }

@@ -39,7 +39,9 @@ struct grey grey_of(const struct grey_series *s)
 
 double grey_rate(const struct grey *g)
 {
-	return g->fit.xx > 0 && isfinite(g->fit.xx) && isfinite(g->fit.xy)
+	double most = grey_rate_limit(g->n - 1, g->span);
+
+	return isfinite(g->fit.xx) && fabs(g->fit.xy) < most * g->fit.xx
 		       ? g->fit.xy / g->fit.xx
 		       : 0;
 }
@@ -92,5 +94,10 @@ double grey_passage(double now, double rate, double limit)
 
 double grey_forecast(const struct grey *g, double h, double gap)
 {
-	return grey_curve(grey_level(g), grey_rate(g), g->span + h, gap);
+	double rate = grey_rate(g),
+	       next = grey_curve(grey_level(g), rate, g->span + h, gap),
+	       newest = g->fit.mean_y - rate * g->fit.mean_x,
+	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
+
+	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;
 }

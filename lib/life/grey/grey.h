@@ -50,7 +50,8 @@ struct grey grey_of(const struct grey_series *s);
 
 /* Development coefficient a, 1/step (negative: growing), and the level c = b - a x1 at
  * the time of the oldest point, so that x(t) = c exp(-a t).  a = 0 below three points,
- * for a zero series, and where values over 1e150 (scale them) make squares overflow. */
+ * for a zero series, beyond grey_rate_limit(), and where values over 1e150 (scale them)
+ * make squares overflow. */
 double grey_rate(const struct grey *g);
 double grey_level(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
@@ -71,6 +72,23 @@ double grey_curve(double level, double rate, double t, double gap);
 /* The time in which that curve, now at a value, reaches a limit on the side to which it
  * goes; INFINITY: never, also where it would have to change its sign. */
 double grey_passage(double now, double rate, double limit);
+
+/* Largest a of a fit over n intervals of this length in all: in x_k (1 + a / 2) = b - a
+ * x1_{k-1}, the model per interval, the factor is above 0 for a > -2, and backward in
+ * time for a < 2 (Liu, Lin, Grey Information, Springer 2006).  A series that passes
+ * through 0 is no exponential and would have any a. */
+static inline double grey_rate_limit(double n, double span)
+{
+	return 2 * n / span;
+}
+
+/* Largest ratio of a forecast, h after the newest point, to the value of the fit there
+ * that rates up to a limit allow, and one more interval as a tolerance.  Beyond, the
+ * curve in time from the oldest point on has nothing to do with the points. */
+static inline double grey_reach(double limit, double h)
+{
+	return exp(fmin(600, 2 + limit * h));
+}
 
 /* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
  * omitted term is x^10 / 11!. */

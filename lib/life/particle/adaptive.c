@@ -13,6 +13,10 @@ static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
 					  single outlier does not look like a drift */
 
+/* Of an observation, in recent errors of noise and model: farther than this from what was
+ * expected it is an outlier, and no particle that far from it follows it. */
+static const double OUTLYING = 20;
+
 /* A past row of all particles, and the gap before it. */
 struct lag {
 	struct filter_step step;
@@ -52,8 +56,7 @@ struct adaptive {
 	long misses;
 	double process;             /* sigma_u */
 	double innovation, carried; /* running mean squares */
-	double z2[MONITOR];
-	int nz;
+	double z2;                  /* the same, of standardised ones */
 	int outlier; /* the last observation was classified as an outlier */
 	unsigned long restarts, outliers;
 };
@@ -175,12 +178,14 @@ static const struct sums *add_older(
 
 /* The grey forecast, h after the newest of count rows, of every particle.  Particles with
  * a common ancestor share its sums.  An exponential through states that cannot be
- * distinguished from 0 is meaningless: such states keep their mean. */
+ * distinguished from 0 is meaningless, and so is one beyond grey_reach(): such states
+ * keep their mean. */
 static void forecast(struct adaptive *a, int count, double h, double noise)
 {
 	const struct filter_step *newest = &a->lag[0].step;
 	size_t n = a->par.filter.particles;
-	double centre = newest->x[0], share = 1.0 / count, end = h, *mean = a->mean;
+	double centre = newest->x[0], share = 1.0 / count, end = h, most, reach,
+	       *mean = a->mean;
 	int newer;
 	const struct sums *older = add_older(a, count, centre, &newer);
 	struct grey_interval ahead;
@@ -188,30 +193,41 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 	for (int k = 0; k < count; k++)
 		end += a->lag[k].gap;
 	ahead = grey_interval(end, h);
+	most = grey_rate_limit(count, end - h);
+	reach = grey_reach(most, h);
 	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
 		size_t last = i - 1 < newest->n ? i - 1 : i - 2;
 		struct pair s = add_states(older, a->lag, newer, i -= 2, last, centre);
 		lanes u = s.u * share, x = s.x * share, uu = s.uu - s.u * u,
 		      ux = s.ux - s.u * x, middle = centre + x,
-		      rate = lanes_if(
-			      lanes_and(uu > 0, lanes_abs(middle) > 3 * noise), -ux / uu),
-		      level = middle + rate * u;
+		      rate = lanes_if(lanes_and(lanes_abs(ux) < most * uu,
+					      lanes_abs(middle) > 3 * noise),
+			      -ux / uu),
+		      level = middle + rate * u,
+		      limit = reach * lanes_abs(level - rate * s.tail);
 
-		mean[last] = level[1];
-		mean[i] = level[0];
-		a->sums[last].u = rate[1];
-		a->sums[i].u = rate[0];
+		for (int k = 0; k < 2; k++) {
+			struct sums *to = &a->sums[k ? last : i];
+
+			to->tail = limit[k];
+			to->u = rate[k];
+			to->x = middle[k];
+			mean[k ? last : i] = level[k];
+		}
 	}
 	/* in a loop of its own, so that several exponentials overlap in the processor */
 	for (size_t i = 0; i < newest->n; i += 2) {
 		int width = newest->n - i < 2 ? 1 : 2;
-		lanes level = lanes_load(mean + i, width),
-		      rate = { a->sums[i].u, a->sums[i + (size_t)width - 1].u };
+		const struct sums *one = &a->sums[i], *two = one + width - 1;
+		lanes level = lanes_load(mean + i, width), rate = { one->u, two->u },
+		      limit = { one->tail, two->tail }, middle = { one->x, two->x },
+		      next = grey_curve_near(level, rate, &ahead);
 		lane_mask far = lanes_abs(rate) > ahead.largest_rate;
 
-		lanes_store(mean + i, grey_curve_near(level, rate, &ahead), width);
 		for (int k = 0; (far[0] | far[1]) && k < width; k++)
-			mean[i + (size_t)k] = grey_curve(level[k], rate[k], end, h);
+			next[k] = grey_curve(level[k], rate[k], end, h);
+		far = lanes_abs(next) > limit;
+		lanes_store(mean + i, lanes_pick(far, middle, next), width);
 	}
 	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
 		mean[i] = mean[newest->ancestor[i]];
@@ -252,7 +268,7 @@ static void push_past(struct adaptive *a, double y, double gap)
 
 static void start_particles(struct adaptive *a, double noise)
 {
-	a->nz = 0;
+	a->z2 = 1;
 	filter_start(a->filter, a->past, a->filled, sqrt(3) * noise);
 }
 
@@ -301,7 +317,7 @@ static int is_outlier(
 	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
 
 	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
-		     miss * miss > 400 * usual;
+		     miss * miss > OUTLYING * OUTLYING * usual;
 	a->outliers += (unsigned long)a->outlier;
 	return a->outlier;
 }
@@ -338,16 +354,8 @@ static void learn_process(
 /* 1 if the particles no longer follow the observations. */
 static int monitor(struct adaptive *a, double e, double variance)
 {
-	double sum = 0;
-
-	a->z2[a->nz++ % MONITOR] = fmin(e * e / variance, MONITOR_CLIP);
-	if (a->nz < MONITOR)
-		return 0;
-	for (int i = 0; i < MONITOR; i++)
-		sum += a->z2[i];
-	if (a->nz == 2 * MONITOR)
-		a->nz = MONITOR;
-	return sum > MONITOR * MONITOR_LIMIT;
+	a->z2 += (fmin(e * e / variance, MONITOR_CLIP) - a->z2) / MONITOR;
+	return a->z2 > MONITOR_LIMIT;
 }
 
 static void put_state(const struct adaptive *a, struct adaptive_row *row)
@@ -375,7 +383,8 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 		/* The spread of the particles is limited: diverged particles would
 		 * otherwise pass for uncertain ones. */
 		own = noise * noise + process * process;
-		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own));
+		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own)) ||
+		       fabs(y - row->state) > OUTLYING * noise;
 		a->restarts += (unsigned long)lost;
 	}
 	if (lost) {

@@ -56,6 +56,10 @@ static const struct {
 	double hazard, falls, growth;
 } past = { 0.36, 0.25, 16 };
 
+/* Particles are drawn whenever the logarithm of the age has grown by this.  No two ages
+ * of rows at equal gaps differ by e^0.02, so that no rounding of times decides. */
+static const double AGEING = 0.02;
+
 /* --- trends ------------------------------------------------------------------------- */
 
 static size_t size_of_bank(const struct bank_par *par, int capacity)
@@ -313,15 +317,15 @@ static struct trend *room(struct bank *b)
 	return lightest;
 }
 
-/* Draws new particles, for regimes that begin now, whenever the age has grown by 2 %. */
+/* Draws new particles, for regimes that begin now. */
 static void breed(struct bank *b)
 {
-	double mass, reached = 0;
+	double older = b->bred > 0 ? log(b->age / b->bred) : AGEING, mass, reached = 0;
 	int parent[BIRTHS], born = 0;
 
-	if (b->par.steady || b->rows < BREEDING || b->age < 1.02 * b->bred)
+	if (b->par.steady || b->rows < BREEDING || older < AGEING)
 		return;
-	mass = 1 - pow(b->bred > 0 ? b->bred / b->age : 1 / 1.02, past.hazard);
+	mass = -expm1(-past.hazard * older);
 	b->bred = b->age;
 	for (int i = 0; i < b->trends && born < BIRTHS; i++) {
 		reached += b->trend[i].weight;
@@ -638,9 +642,9 @@ static void heed_rounding(struct bank *b, double y)
 	} else {
 		b->quantum = isinf(b->quantum) ? step : common_divisor(step, b->quantum);
 	}
-	if (b->rows == 0 || !b->repeats || isinf(b->quantum))
+	if (b->rows == 0)
 		return;
-	step = b->quantum / b->range;
+	step = rounding_of(b);
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 

@@ -166,6 +166,12 @@ static inline double damage_of(const struct bank *b, double y)
 	return (y - b->base) / b->range;
 }
 
+/* The step of rounded damages, 0 where no two successive ones have been equal. */
+static inline double rounding_of(const struct bank *b)
+{
+	return b->repeats && isfinite(b->quantum) ? b->quantum / fabs(b->range) : 0;
+}
+
 static inline double freedom_of(const struct bank *b, const struct trend *tr)
 {
 	return b->freedom[tr->kind];

@@ -117,6 +117,7 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 struct crossing {
 	double line[LINE]; /* now */
 	double limit;      /* h of the level to be reached */
+	double rounding;   /* sd of h by rounding that is the same in all rows */
 	double straight;   /* the distance if the rate of the damage stayed constant */
 	double variance, freedom; /* of the noise, with its correlation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
@@ -198,6 +199,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 		     there = place_of(b, tr->shape, target);
 	double scale, load[RATES];
 	struct crossing p = { .limit = there.h,
+		.rounding = rounding_of(b) / sqrt(12) * there.slope,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)) };
@@ -255,13 +257,12 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 	const double *x = p->line;
 	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0])),
 	       root = sqrt(x[LINE_VV]), z = normal_above(x[LINE_V] / (sd * root), c),
-	       v = x[LINE_V] + sd * root * z, h, time;
+	       v = x[LINE_V] + sd * root * z, known, h, time;
 
 	if (!(v > 0)) /* damage does not heal */
 		return INFINITY;
-	h = x[LINE_H] + sd * x[LINE_HV] / root * z +
-	    sd * sqrt(fmax(0, x[LINE_HH] - x[LINE_HV] * x[LINE_HV] / x[LINE_VV])) *
-		    c->z[2];
+	known = sd * sqrt(fmax(0, x[LINE_HH] - x[LINE_HV] * x[LINE_HV] / x[LINE_VV]));
+	h = x[LINE_H] + sd * x[LINE_HV] / root * z + hypot(known, p->rounding) * c->z[2];
 	time = (p->limit - h) / v;
 	if (time <= 0)
 		return 0;

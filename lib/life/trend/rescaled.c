@@ -60,12 +60,12 @@ double rescaled_add(struct rescaled *r, double y)
 
 int rescaled_doubtful(const struct rescaled *r)
 {
-	double steps, factor;
+	double steps, change;
 
 	for (int n = 3; n < RESCALED_HALF && r->rows >= RESCALED_HALF + n; n++) {
-		factor = factor_at(r->y + 2 * RESCALED_HALF - n, n, &steps);
-		if (fabs(steps) > log(SAME) &&
-			fabs(steps - 2 * log(factor)) < fabs(steps))
+		change = 2 * log(factor_at(r->y + 2 * RESCALED_HALF - n, n, &steps));
+		if (fmin(fabs(change), fabs(steps)) > log(SAME) &&
+			fabs(steps - change) < fabs(steps))
 			return 1;
 	}
 	return 0;
