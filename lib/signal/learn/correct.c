@@ -133,8 +133,7 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 			break;
 		before = chi2;
 		mean_residual(ex, more, more + points, half);
-		change = dot(more, more, points) /
-			 (c->duration * shape_energy(c->shape));
+		change = dot(more, more, points) / (c->duration * shape_energy(c->shape));
 		misfit = fmin(0.6 * misfit, FOLLOW * change);
 		better = shape_correct(c->shape, more, half, 1 / c->duration);
 		if (!better) {
