@@ -489,33 +489,38 @@ static int is_known(const struct template *found)
 }
 
 /* Takes the pulse from the record if it is not given; a pulse of sensor.h that fits as
- * well has fewer parameters and is preferred.  If foreign events have misled the guess of
- * the duration, the pulse is found at another one. */
+ * well has fewer parameters and is preferred, also one at another duration than the guess,
+ * by which foreign events may mislead. */
 static enum separate_status find_template(const struct calibrate_par *par,
 	const struct record *rec, struct template *found, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.5, 0.25, 0.125 };
 	const unsigned char *hidden[2];
-	double reach;
 
 	learn_hidden(par, c, hidden);
 	template_clear(found);
 	if (par->pulse != CALIBRATE_ANY_PULSE || !isnan(par->duration))
 		return SEPARATE_OK;
+	found->events = 0;
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
+		double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
+		struct template other = { .alone = found->alone };
 
 		if (T < SHAPE_SHORTEST)
-			continue;
-		reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
-		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
+			break;
+		if (template_find(&other, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
 			    reach) != NUM_OK)
 			return SEPARATE_MEMORY;
-		found->elsewhere = k > 0;
-		if (found->events > 0 && (k == 0 || is_known(found)))
-			break;
+		other.elsewhere = k > 0;
+		if (k > 0 && !(other.events > 0 && is_known(&other))) {
+			template_clear(&other);
+			continue;
+		}
 		template_clear(found);
-		found->events = 0;
+		*found = other;
+		if (found->events > 0 && is_known(found))
+			break;
 	}
 	if (found->events > 0 && found->elsewhere)
 		c->duration = found->duration;

@@ -263,9 +263,8 @@ static enum separate_status learn_from_means(
 static const double FIRST = 0.25;
 
 /* Learns from the n oldest samples, even if more have arrived at once.  If the pulses
- * seem long, and are not described as short ones, awaits as many means.  *used:
- * how many samples these are, if there are any. */
-static enum separate_status calibrate_now(struct separate *s, size_t n, size_t *used)
+ * seem long, and are not described as short ones, awaits as many means. */
+static enum separate_status calibrate_now(struct separate *s, size_t n)
 {
 	size_t means;
 	int ratio = 1, again = s->awaited > 0;
@@ -289,8 +288,6 @@ static enum separate_status calibrate_now(struct separate *s, size_t n, size_t *
 		s->awaited = means;
 		return SEPARATE_OK;
 	}
-	if (ratio > 1)
-		*used = lesser(means, s->buffer[0].n);
 	status = SEPARATE_OK;
 	/* The ratios are quartered down to 1; each has an equal part of the work left. */
 	while (ratio > 1 && status == SEPARATE_OK && !s->calibrated) {
@@ -389,8 +386,9 @@ size_t separate_wants(const struct separate *s)
 
 enum separate_status separate_learn(struct separate *s)
 {
+	size_t half = s->par.learn / 2;
 	int first = 1, found;
-	size_t n, from, used;
+	size_t n, from;
 
 	while (!s->calibrated &&
 		s->buffer[0].n >= (s->ended && first ? 1 : s->par.learn)) {
@@ -404,8 +402,7 @@ enum separate_status separate_learn(struct separate *s)
 				return SEPARATE_MEMORY;
 			continue;
 		}
-		used = s->par.learn;
-		status = calibrate_now(s, n, &used);
+		status = calibrate_now(s, n);
 		if (s->awaited)
 			return status;
 		first = 0;
@@ -416,13 +413,13 @@ enum separate_status separate_learn(struct separate *s)
 		if (s->calibrated)
 			break;
 		s->reason = status;
-		if (look_for_bursts(s, lesser(s->buffer[0].n, used), &found) !=
+		if (look_for_bursts(s, lesser(s->buffer[0].n, s->par.learn), &found) !=
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		s->unexplained |= found;
 		if (s->buffer[0].n < s->par.learn)
 			break;
-		if (pass_over(s, used / 2, found) != SEPARATE_OK)
+		if (pass_over(s, half, found) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
 	}
 	return SEPARATE_OK;
