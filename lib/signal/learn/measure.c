@@ -489,8 +489,8 @@ static int is_known(const struct template *found)
 }
 
 /* Takes the pulse from the record if it is not given; a pulse of sensor.h that fits as
- * well has fewer parameters and is preferred, also one at another duration than the guess,
- * by which foreign events may mislead. */
+ * well has fewer parameters and is preferred, also one at another duration than the
+ * guess, which foreign events may mislead. */
 static enum separate_status find_template(const struct calibrate_par *par,
 	const struct record *rec, struct template *found, struct calibration *c)
 {

@@ -263,7 +263,8 @@ static enum separate_status learn_from_means(
 static const double FIRST = 0.25;
 
 /* Learns from the n oldest samples, even if more have arrived at once.  If the pulses
- * seem long, and are not described as short ones, awaits as many means. */
+ * seem long, and are not described as short ones, awaits as many means; where nothing was
+ * learned from these, they are averaged again when half of them have been passed over. */
 static enum separate_status calibrate_now(struct separate *s, size_t n)
 {
 	size_t means;
@@ -274,6 +275,8 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
 	if (s->ratio == 1 && s->par.method == SEPARATE_FIT && !s->par.known.filter &&
 		!s->par.want_sources && separate_guess_ratio(s, &ratio) != NUM_OK)
 		return SEPARATE_MEMORY;
+	if (s->buffer[0].begin < s->averaged)
+		ratio = 1;
 	if (ratio > 1 && !again) {
 		status = learn_from(s, n, FIRST);
 		if (status == SEPARATE_OK && s->cal.duration <= SEPARATE_LONG)
@@ -288,6 +291,9 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
 		s->awaited = means;
 		return SEPARATE_OK;
 	}
+	if (ratio > 1)
+		s->averaged =
+			s->buffer[0].begin + (long long)lesser(means, s->buffer[0].n) / 2;
 	status = SEPARATE_OK;
 	/* The ratios are quartered down to 1; each has an equal part of the work left. */
 	while (ratio > 1 && status == SEPARATE_OK && !s->calibrated) {

@@ -73,11 +73,13 @@ struct separate {
 	double first[CHANNELS_MAX]; /* frame of a record with a kept instrument */
 	double level[CHANNELS_MAX], levels;
 	long long level_at;
-	int looked;     /* 1: the first samples have been examined */
-	int crowded;    /* 1: long sections hold too many pulses */
-	int ratio;      /* samples of the record in one of buffer */
-	size_t awaited; /* samples of buffer to learn from means */
-	int channels;   /* of the record */
+	int looked;         /* 1: the first samples have been examined */
+	int crowded;        /* 1: long sections hold too many pulses */
+	int ratio;          /* samples of the record in one of buffer */
+	size_t awaited;     /* samples of buffer to learn from means */
+	long long averaged; /* first sample of the record from which they are averaged
+			       again */
+	int channels;       /* of the record */
 	struct converter converter[CHANNELS_MAX]; /* of each channel, in their order */
 	struct buffer buffer[CHANNELS_MAX];
 	struct sections *sections;
