@@ -19,13 +19,14 @@ typedef uint64_t lane_words __attribute__((vector_size(16)));
 typedef int32_t lane_bits __attribute__((vector_size(16)));
 typedef float four __attribute__((vector_size(16))); /* in single precision */
 
-/* Four doubles or eight floats at a time, within functions marked LANES_CLONES: these are compiled for
- * AVX2 too where the loader can choose, to the same bits, since AVX2 has no fused
- * operations; elsewhere they are two vectors of 16 bytes.  Clang gives the chosen function another
- * name, by which other files do not find it. */
+/* Four doubles or eight floats at a time, within functions marked LANES_CLONES: these are
+ * compiled for AVX2 too where the loader can choose, to the same bits, since AVX2 has no
+ * fused operations; elsewhere they are two vectors of 16 bytes.  Clang gives the chosen
+ * function another name, by which other files do not find it. */
 typedef double lanes4 __attribute__((vector_size(32)));
 typedef int lanes4_int __attribute__((vector_size(16)));
-typedef float eight __attribute__((vector_size(32), aligned(16))); /* as malloc() aligns */
+typedef float eight
+	__attribute__((vector_size(32), aligned(16))); /* as malloc() aligns */
 typedef int32_t eight_bits __attribute__((vector_size(32), aligned(16)));
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__)
 #define LANES_CLONES __attribute__((target_clones("avx2", "default")))

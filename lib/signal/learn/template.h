@@ -22,7 +22,7 @@ struct template
 	int events;
 	double t1[TEMPLATE_EVENTS], t2[TEMPLATE_EVENTS]; /* arrivals, samples */
 	double a[TEMPLATE_EVENTS];                       /* amplitudes at sensor 1 */
-	int signs; /* 1: some of either sign */
+	int signs;                                       /* 1: some of either sign */
 	/* The pulse of sensor.h that is most similar, and the share of the energy that it
 	 * leaves.  Arrivals are those of this pulse. */
 	int pulse, reversed;
