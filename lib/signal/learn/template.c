@@ -182,7 +182,6 @@ static int most_common(struct search *s)
 			best = i;
 		}
 	}
-
 	return most >= TEMPLATE_LEAST ? best : -1;
 }
 
