@@ -19,7 +19,7 @@ static const double ALIKE = 0.02;
 
 /* Power of an event, over that of the noise, from which on it is not alike because of its
  * noise.  With 1 a drifting baseline is taken for a pulse in a group of turbulent flow, 6
- * gives the same rows (ten records of groups that differ in shape, noise and rate). */
+ * gives the same rows (nine records that differ in shape, noise and rate). */
 static const double CLEAR = 3;
 
 struct event {
