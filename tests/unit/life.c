@@ -234,6 +234,11 @@ static double two_repairs(int k, double y)
 }
 
 /* The same under a twentieth of the noise: each step of the rate is well beyond it. */
+static double cleaned(int k, double y)
+{
+	return y - 0.3 * (k / 30);
+}
+
 static double quiet_repair(int k, double y)
 {
 	return repair(k, k / 100.0 + (y - k / 100.0) / 20);
@@ -415,6 +420,15 @@ static void test_disturbances(void)
 	/* 0.33 at row 69, nine rows after the turn: 22 of 0.03 are left */
 	near(median_life(70, accelerated, 0, 0), 22, 3,
 		"a new rate that is thirty times as high is learnt in nine rows");
+	/* After three repairs in 100 rows the rest of .9 takes 90 rows, and 144 if others
+	 * follow at two in 100 rows. */
+	ok(life_of(100, cleaned, 0, 0, 0.05) < 90 &&
+			life_of(100, cleaned, 0, 0, 0.5) > 90 &&
+			life_of(100, cleaned, 0, 0, 0.5) < 144 &&
+			life_of(100, cleaned, 0, 0, 0.95) > 144,
+		"after three repairs others may follow, or none: %g, %g and %g rows",
+		life_of(100, cleaned, 0, 0, 0.05), life_of(100, cleaned, 0, 0, 0.5),
+		life_of(100, cleaned, 0, 0, 0.95));
 	near(median_life(60, quiet_repair, 0, 0), plain + 40, 6,
 		"a repair in quiet data lengthens the life by what it sets back");
 }

@@ -393,6 +393,9 @@ static void take(struct bank *b, const struct row *r)
 	b->last = r->t;
 	for (int i = 0; i < b->par.n_loads; i++)
 		b->load[i].taken = r->sum[i];
+	if (b->jumped)
+		b->healed += b->level - damage;
+	b->jumped = 0;
 	b->level = damage;
 	b->rows++;
 	weigh(b);
@@ -418,7 +421,7 @@ static void start(struct bank *b)
 	b->first = b->last = r[0].t;
 	b->level = damage_of(b, r[0].y);
 	b->before = b->farthest = r[0].y;
-	b->frozen = 0;
+	b->frozen = b->repairs = b->healed = b->jumped = 0;
 	b->idle = b->age = b->squares = b->longest = b->bred = b->scored = 0;
 	b->gap = 1;
 	b->trends = 0;
@@ -551,6 +554,8 @@ static void shift(struct bank *b, const struct row *r, int repaired)
 	unsettle(b, damage, jump);
 	if (!repaired)
 		renew(b, damage, jump * b->unit / (r->t - b->last));
+	b->repairs += repaired;
+	b->jumped = 1;
 	b->counts.shifts++;
 }
 
@@ -729,10 +734,13 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
-	if (event == BANK_REPAIR)
+	if (event == BANK_REPAIR) {
 		unsettle(b, b->level, 1);
-	else
+		b->repairs++;
+		b->jumped = 1;
+	} else {
 		renew(b, b->level, 0);
+	}
 	return 1;
 }
 

@@ -56,22 +56,23 @@ struct row {
 
 struct bank {
 	struct bank_par par;
-	int shapes, capacity; /* coordinates; trends */
-	long rows;            /* taken */
-	double base, range;   /* y at D = 0; from there to the threshold, signed */
-	double unit;          /* of time: the mean of the first two gaps */
-	double first, last;   /* times without the idle time */
-	double idle;          /* total idle time */
-	double age, gap;      /* of the last row, mean gap, in units */
-	double squares;       /* sum of the squares of all gaps, with halts, units^2 */
-	double longest;       /* of these gaps */
-	double level;         /* D of the last row */
-	double before;        /* y of the last row */
-	double farthest;      /* y of the row nearest to the threshold, or beyond */
-	double quantum;       /* common divisor of the steps of y */
-	int repeats;          /* 1: successive values have been equal */
-	double frozen;        /* rows that did so by a frozen sensor, expected */
-	double bred;          /* age at which particles were last drawn */
+	int shapes, capacity;   /* coordinates; trends */
+	long rows;              /* taken */
+	double base, range;     /* y at D = 0; from there to the threshold, signed */
+	double unit;            /* of time: the mean of the first two gaps */
+	double first, last;     /* times without the idle time */
+	double idle;            /* total idle time */
+	double age, gap;        /* of the last row, mean gap, in units */
+	double squares;         /* sum of the squares of all gaps, with halts, units^2 */
+	double longest;         /* of these gaps */
+	double level;           /* D of the last row */
+	double before;          /* y of the last row */
+	double farthest;        /* y of the row nearest to the threshold, or beyond */
+	double quantum;         /* common divisor of the steps of y */
+	int repeats;            /* 1: successive values have been equal */
+	double frozen;          /* rows that did so by a frozen sensor, expected */
+	double bred;            /* age at which particles were last drawn */
+	double repairs, healed; /* their number, and the damage that they took back */
 	double freedom[KINDS], keep[KINDS], log_constant[KINDS];
 	double cut; /* square of the largest standardised innovation */
 	double scored;
@@ -80,7 +81,7 @@ struct bank {
 	double at[RATES];              /* 1, and each f since the row before */
 	int loaded;                    /* 1: the loads have begun */
 	double loaded_from, loaded_to; /* times */
-	int n_held, event;
+	int n_held, jumped;            /* 1: the next row shows the level after a jump */
 	int trends, fixed; /* trends in use; those of them that are not particles */
 	struct bank_counts counts;
 	struct trend trend[]; /* [capacity], then their states */

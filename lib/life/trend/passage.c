@@ -125,6 +125,8 @@ struct crossing {
 	double lasts;             /* a regime of the unit, on average so far */
 	double regime;            /* age of the present one, but no more than that */
 	double stray, lean;       /* see STRAY */
+	double repairs;           /* to come, per unit of time */
+	double gain;              /* of time by each, as a share */
 	const struct future *future;
 	double hazard;
 };
@@ -206,6 +208,8 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 
 	p.lasts = (b->age + ahead) / (1 + tr->changes);
 	p.regime = fmin(p.lasts, b->age + ahead - tr->onset);
+	p.repairs = (b->repairs - 1) / (b->age + ahead);
+	p.gain = b->healed / b->repairs / (target - b->level);
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
 	line_at(b, tr, load, p.line);
@@ -251,6 +255,17 @@ static double change(const struct crossing *p, double time, const struct chance 
 	return j + hasten(rest, g);
 }
 
+/* Time to the passage with the repairs to come.  Their number is geometric: that of a
+ * Poisson process whose rate is known from one interval. */
+static double with_repairs(const struct crossing *p, double time, const struct chance *c)
+{
+	double mean = p->repairs * time;
+
+	if (!(mean > 0 && p->gain > 0))
+		return time;
+	return time * (1 + p->gain * floor(log(c->u[4]) / log(mean / (1 + mean))));
+}
+
 static double draw_life(const struct bank *b, const struct crossing *p, double age,
 	const struct chance *c)
 {
@@ -274,7 +289,7 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 	time = hasten(time, p->growth) * exp(p->stray * c->stray - p->lean);
 	if (p->straight > v * NOTHING * age)
 		return INFINITY;
-	return change(p, time, c);
+	return with_repairs(p, change(p, time, c), c);
 }
 
 /* 1 for this share of the draws, evenly spaced. */

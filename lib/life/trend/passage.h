@@ -14,6 +14,9 @@
  * Hazard, growth and share of drops depend on whether the rate at present falls, is
  * constant or rises in the coordinate.
  *
+ * After k > 1 repairs others will come, on average one in the age of the unit over k - 1,
+ * and each takes back as much damage as those so far did.
+ *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row (as
  * doc/benchmarks.md tells), is of a copy of the bank that has accepted them.  It falls
