@@ -151,8 +151,7 @@ static const struct future *future_of(const struct bank_shape *s)
 }
 
 /* Variance of the logarithm of the time to the passage between the trends, without those
- * whose regime has changed: such a change is no curve near the coordinate, and how these
- * differ says nothing about a growth. */
+ * whose regime has changed: such a change is no curve near the coordinate. */
 static double spread_of(const struct bank *b, double target)
 {
 	struct running logs = { 0 };
@@ -225,7 +224,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
 	else /* the path of another unit is known to its end */
-		let_stray(&p, here.h, tr->growth > 0 ? 0 : spread);
+		let_stray(&p, here.h, spread);
 	return p;
 }
 
