@@ -236,7 +236,7 @@ static double two_repairs(int k, double y)
 /* The same under a twentieth of the noise: each step of the rate is well beyond it. */
 static double cleaned(int k, double y)
 {
-	return y - 0.3 * (k / 30);
+	return y - 0.3 * floor(k / 30.0);
 }
 
 static double quiet_repair(int k, double y)
