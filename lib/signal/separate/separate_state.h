@@ -86,7 +86,6 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
-	struct joint_scene fitted; /* of the last fit of a window */
 	struct common common;
 	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
