@@ -68,8 +68,11 @@ static enum joint_status reserve_samples(struct joint *j, size_t n)
 	return JOINT_OK;
 }
 
-static enum joint_status reserve_columns(struct joint *j, size_t support)
+enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s)
 {
+	double longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
+	double length = 2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0));
+	size_t support = (size_t)(length + 0.4 * s->duration) + 4;
 	double *at;
 
 	if (support <= j->support)
@@ -405,19 +408,12 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	int m)
 {
 	enum joint_status status;
-	double longest;
-	size_t support;
 
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
-	longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
-	support =
-		(size_t)(2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0)) +
-			 0.4 * s->duration) +
-		4;
 	status = reserve_samples(j, n);
 	if (status == JOINT_OK)
-		status = reserve_columns(j, support);
+		status = joint_reserve_columns(j, s);
 	if (status != JOINT_OK)
 		return status;
 	j->n = n;
@@ -433,13 +429,6 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	if (status == JOINT_OK)
 		joint_subtract_all(j, 1);
 	return status;
-}
-
-const double *joint_basis(const struct joint *j, int channel, int *count, double *taken)
-{
-	*count = j->basis;
-	*taken = j->taken;
-	return j->q[channel];
 }
 
 double joint_work(const struct joint *j)

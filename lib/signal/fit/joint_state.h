@@ -109,6 +109,8 @@ static inline double joint_along_basis(
 enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m);
+/* Room for columns of pulses in the range of delays of this scene. */
+enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);
@@ -119,6 +121,12 @@ void joint_subtract(struct joint *j, const struct joint_pulse *p, double sign);
 void joint_subtract_all(struct joint *j, double sign);
 /* Columns of pulse i. */
 void joint_make_columns(struct joint *j, int i);
+
+/* Samples of the last fit in [from, to) of a channel that are not hidden. */
+size_t joint_visible(const struct joint *joint, int channel, size_t from, size_t to);
+
+/* Sets those that are, of n samples of the channel from sample first on, to zero in x. */
+void joint_hide(const struct joint *joint, int channel, long first, size_t n, double *x);
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 

@@ -9,7 +9,7 @@
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
-#include "signal/separate/quadrature.h"
+#include "signal/fit/quadrature.h"
 #include "signal/separate/validate.h"
 #include <stddef.h>
 

@@ -9,7 +9,7 @@
 #include "signal/fit/goodness.h"
 #include "signal/separate/buffer.h"
 #include "signal/separate/converter.h"
-#include "signal/separate/quadrature.h"
+#include "signal/fit/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
