@@ -7,9 +7,9 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
+#include "signal/fit/quadrature.h"
 #include "signal/separate/buffer.h"
 #include "signal/separate/converter.h"
-#include "signal/fit/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
@@ -77,8 +77,7 @@ struct separate {
 	int crowded;        /* 1: long sections hold too many pulses */
 	int ratio;          /* samples of the record in one of buffer */
 	size_t awaited;     /* samples of buffer to learn from means */
-	long long averaged; /* first sample of the record from which they are averaged
-			       again */
+	long long averaged; /* no means are tried before this sample of the record */
 	int channels;       /* of the record */
 	struct converter converter[CHANNELS_MAX]; /* of each channel, in their order */
 	struct buffer buffer[CHANNELS_MAX];
