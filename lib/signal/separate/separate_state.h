@@ -21,8 +21,7 @@ enum { CHANNELS_MAX = 4 };
 struct entry {
 	struct transit row;
 	struct evidence evidence;
-	struct arrival arrival; /* its group 0: none */
-	double more_square;     /* as that of joint_pulse */
+	double more_square; /* as that of joint_pulse */
 };
 
 /* A section to be reported once its rows are tested. */
