@@ -411,9 +411,9 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
-	status = reserve_samples(j, n);
+	status = joint_reserve_columns(j, s);
 	if (status == JOINT_OK)
-		status = joint_reserve_columns(j, s);
+		status = reserve_samples(j, n);
 	if (status != JOINT_OK)
 		return status;
 	j->n = n;
