@@ -85,7 +85,7 @@ static enum separate_status fit_quadrature(struct separate *s, long long from, s
 	int doubt;
 	enum num_status status;
 
-	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2, n,
+	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2,
 		s->pulse, a->m, j->chi2, s->both, &doubt);
 	if (status == NUM_MEMORY)
 		return SEPARATE_MEMORY;

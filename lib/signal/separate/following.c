@@ -47,11 +47,11 @@ static void follow_delay(struct separate *s, double delay)
 
 /* The gain is kept until the mean of the last GAINS pulses differs from it by three
  * standard errors; then it is set to their mean. */
-static void follow_gain(struct separate *s, const struct joint_pulse *p)
+static void follow_gain(struct separate *s)
 {
 	double share, se, sum = 0;
 
-	joint_gain_error(s->joint, p, &share, &se);
+	joint_gain_error(s->joint, &share, &se);
 	if (!(se > 0) || isinf(se))
 		return;
 	s->gain_off[s->gains++ % GAINS] = share / se;
@@ -84,5 +84,5 @@ void separate_follow(struct separate *s, const struct account *a)
 	if (separate_is_range_free(s))
 		follow_delay(s, a->pulse[0].delta);
 	if (isnan(s->par.known.gain))
-		follow_gain(s, &a->pulse[0]);
+		follow_gain(s);
 }

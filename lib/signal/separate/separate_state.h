@@ -7,9 +7,9 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
+#include "signal/fit/quadrature.h"
 #include "signal/separate/buffer.h"
 #include "signal/separate/converter.h"
-#include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
@@ -21,8 +21,7 @@ enum { CHANNELS_MAX = 4 };
 struct entry {
 	struct transit row;
 	struct evidence evidence;
-	struct arrival arrival; /* its group 0: none */
-	double more_square;     /* as that of joint_pulse */
+	double more_square; /* as that of joint_pulse */
 };
 
 /* A section to be reported once its rows are tested. */
@@ -77,8 +76,7 @@ struct separate {
 	int crowded;        /* 1: long sections hold too many pulses */
 	int ratio;          /* samples of the record in one of buffer */
 	size_t awaited;     /* samples of buffer to learn from means */
-	long long averaged; /* first sample of the record from which they are averaged
-			       again */
+	long long averaged; /* no means are tried before this sample of the record */
 	int channels;       /* of the record */
 	struct converter converter[CHANNELS_MAX]; /* of each channel, in their order */
 	struct buffer buffer[CHANNELS_MAX];
@@ -86,7 +84,6 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
-	struct joint_scene fitted; /* of the last fit of a window */
 	struct common common;
 	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];

@@ -47,7 +47,6 @@ enum separate_status separate_fit_window(
 
 	if (status != JOINT_OK)
 		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
-	s->fitted = s->scene;
 	s->counters.fits++;
 	s->counters.steps += (double)a->r.steps;
 	s->counters.searches += (double)a->r.searches;
@@ -56,8 +55,8 @@ enum separate_status separate_fit_window(
 	a->done = 0;
 	while (a->done < a->m && a->pulse[a->done].t < a->boundary)
 		a->done++;
-	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
-		s->cal.chi2 < CALIBRATE_TOLERABLE || s->cal.dense, &a->r, &a->goodness);
+	goodness_of_fit(s->joint, a->done, a->boundary,
+		s->cal.chi2 < CALIBRATE_TOLERABLE || s->cal.dense, &a->goodness);
 	return SEPARATE_OK;
 }
 
@@ -85,8 +84,7 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 		if (has_quadrature(s) || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
 		else
-			joint_pair_odds(s->joint, &s->fitted, a->pulse, i, scatter,
-				s->pair_odds[i]);
+			joint_pair_odds(s->joint, i, scatter, s->pair_odds[i]);
 }
 
 int separate_is_described(const struct account *a)
