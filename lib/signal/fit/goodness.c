@@ -45,13 +45,6 @@ static int is_misfit(const struct joint *j, int i)
 	return too_much(sum, fmax(dof, 1), SIGMAS_SELDOM);
 }
 
-/* 1 if a pulse is too small to be found alone.  The threshold is lower beside others,
- * where the error of their shape can make such a pulse. */
-static int is_faint(const struct joint_scene *s, const struct joint_pulse *p)
-{
-	return p->a * p->a * joint_energy(s) < s->threshold;
-}
-
 /* Pulses fitted to an event that is not a particle overlap by more than half.  In a whole
  * section with quiet on either side, pulses that so overlap a doubted one, or the next
  * one, are doubted as well. */
@@ -79,9 +72,13 @@ void goodness_of_fit(const struct joint *j, int done, double boundary, int model
 	}
 	out->chi2 = chi2 / dof;
 	out->stretch = j->m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
-	for (int i = 0; i < done; i++)
-		out->pulse[i] =
-			is_faint(s, &j->pulse[i]) ? SEPARATE_MISFIT : out->stretch;
+	/* A pulse too small to be found alone is doubted: beside others, where the error
+	 * of their shape can make such a pulse, the threshold is lower. */
+	for (int i = 0; i < done; i++) {
+		double energy = j->pulse[i].a * j->pulse[i].a * joint_energy(s);
+
+		out->pulse[i] = energy < s->threshold ? SEPARATE_MISFIT : out->stretch;
+	}
 	if (too_much(chi2, dof, SIGMAS_NEVER)) {
 		for (int i = 0; i < done; i++)
 			if (!model_holds || j->m == 1 || is_misfit(j, i))

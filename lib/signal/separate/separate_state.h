@@ -127,6 +127,10 @@ struct separate {
 
 /* One explanation of a window: its pulses, and the goodness of their fit. */
 struct account {
+	long long from;
+	size_t n;  /* samples from this one on */
+	int cut;   /* 1: the section goes on behind it */
+	int whole; /* 1: it is a section whose number of sources is not given */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int m, done; /* pulses, and those before the boundary */
 	double boundary;
@@ -263,10 +267,10 @@ int separate_is_other_noise(const struct separate *s);
 /* Excludes the samples that the converter has not measured from the fit.  Not if the
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window of n samples of channels y, with the first a->m pulses of a as
- * guesses, and tests the fit. */
-enum separate_status separate_fit_window(struct separate *s, const double *const y[],
-	size_t n, int cut, struct account *a);
+/* Fits channels y of a window, with the first a->m pulses of a as guesses, and tests the
+ * fit. */
+enum separate_status separate_fit_window(
+	struct separate *s, const double *const y[], struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
 void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
@@ -283,8 +287,7 @@ enum num_status separate_measure_common(
 /* Samples on either side of a window that tell its noise; 0: none are needed. */
 long long separate_common_reach(const struct separate *s);
 /* Fits a window that a describes again, without what the noise has in common. */
-enum separate_status separate_fit_without_common(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+enum separate_status separate_fit_without_common(struct separate *s, struct account *a);
 
 /* following.c */
 
@@ -304,8 +307,7 @@ void separate_set_gain(struct separate *s, long long from);
  * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
  * accepted if it describes the window with no more pulses than before, or with one.  Of a
  * window that they describe only the last is tried, which has to be likelier. */
-enum separate_status separate_try_rivals(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+enum separate_status separate_try_rivals(struct separate *s, struct account *a);
 
 /* foreign_event.c */
 

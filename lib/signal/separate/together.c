@@ -5,9 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Rows by which the present one is tested: they know a share of 0.7 % to 0.5 %. */
-enum { LATELY = 256 };
-
 /* Expected share of wrong rows among those that are not doubted.  0.01, 0.007, 0.005 and
  * 0.0025 leave 1.9, 1.4, 0.8 and 0.4 % of them wrong in twelve records of 100 to 250
  * particles a second (scenes dense of tests/matrix/scenes.tsv, -s 500), and keep 0.88,
@@ -30,17 +27,17 @@ static const double WEAK = 0.1;
 static const double UNLIKELY = 0.01;
 
 struct together {
-	struct evidence row[LATELY]; /* not doubted */
-	double any[LATELY];          /* logarithms of amplitudes, of doubted rows too */
-	int alone[LATELY];           /* all of these rows */
-	int followers[LATELY];       /* NEAR to FAR behind each; -1: it is weak */
-	size_t rows, all;            /* taken in so far: not doubted, and all */
-	double density;              /* followers per duration */
-	double mean, sd, width;      /* of sizes, and of their kernel */
-	double astray;               /* share of delays that are not of the flow */
-	double flow_var, least_var;  /* variance of the others, and a bound of it */
-	double least;                /* rows in company that are smaller are none */
-	double limit;                /* probability beyond which rows are doubted */
+	struct evidence row[EVIDENCE_KEPT]; /* not doubted */
+	double any[EVIDENCE_KEPT];    /* logarithms of amplitudes, of doubted rows too */
+	int alone[EVIDENCE_KEPT];     /* all of these rows */
+	int followers[EVIDENCE_KEPT]; /* NEAR to FAR behind each; -1: it is weak */
+	size_t rows, all;             /* taken in so far: not doubted, and all */
+	double density;               /* followers per duration */
+	double mean, sd, width;       /* of sizes, and of their kernel */
+	double astray;                /* share of delays that are not of the flow */
+	double flow_var, least_var;   /* variance of the others, and a bound of it */
+	double least;                 /* rows in company that are smaller are none */
+	double limit;                 /* probability beyond which rows are doubted */
 };
 
 struct together *together_new(void)
@@ -51,11 +48,6 @@ struct together *together_new(void)
 void together_free(struct together *t)
 {
 	free(t);
-}
-
-static size_t held(size_t count)
-{
-	return count < LATELY ? count : LATELY;
 }
 
 static int count_followers(const struct evidence *a, size_t i, size_t n)
@@ -108,7 +100,7 @@ static double size_density(const struct together *t, double x, size_t self, doub
 {
 	double sum = unlike(t, x), all = 1, width = hypot(t->width, blur);
 
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		if (i != self) {
 			sum += (1 - t->row[i].wrong) * kernel(x - t->row[i].size, width);
 			all += 1 - t->row[i].wrong;
@@ -123,9 +115,9 @@ static double size_density(const struct together *t, double x, size_t self, doub
 static double best_width(const struct together *t, double widest)
 {
 	enum { WIDTHS = 4 };
-	double others[LATELY][WIDTHS] = { { 0 } }, most = -INFINITY, best = widest;
+	double others[EVIDENCE_KEPT][WIDTHS] = { { 0 } }, most = -INFINITY, best = widest;
 
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		for (size_t k = 0; k < i; k++) {
 			double z = (t->row[i].size - t->row[k].size) / widest;
 			double one = exp(-0.5 * z * z);
@@ -139,7 +131,7 @@ static double best_width(const struct together *t, double widest)
 	for (int w = 0; w < WIDTHS; w++) {
 		double width = ldexp(widest, -w), sum = 0;
 
-		for (size_t i = 0; i < held(t->rows); i++)
+		for (size_t i = 0; i < evidence_kept(t->rows); i++)
 			sum += (1 - t->row[i].wrong) *
 			       log(unlike(t, t->row[i].size) +
 				       others[i][w] / (sqrt(2 * M_PI) * width));
@@ -157,12 +149,12 @@ static void learn(struct together *t)
 {
 	double n = 0, strong = 0, pairs = 0, mean = 0, square = 0, sum = 0, followed = 0;
 
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (t->followers[i] >= 0) {
 			sum += t->followers[i];
 			followed++;
 		}
-	for (size_t i = 0; i < held(t->rows); i++) {
+	for (size_t i = 0; i < evidence_kept(t->rows); i++) {
 		n += 1 - t->row[i].wrong;
 		strong += t->row[i].weak ? 0 : 1 - t->row[i].wrong;
 		pairs += t->row[i].pair;
@@ -170,10 +162,10 @@ static void learn(struct together *t)
 	}
 	n = fmax(n, 1);
 	mean /= n;
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		square += (1 - t->row[i].wrong) * pow(t->row[i].size - mean, 2);
-	t->density = n / fmax(strong, 1) * (1 + pairs / (double)held(t->rows)) * sum /
-		     fmax(followed, 1) / (FAR - NEAR);
+	t->density = n / fmax(strong, 1) * (1 + pairs / (double)evidence_kept(t->rows)) *
+		     sum / fmax(followed, 1) / (FAR - NEAR);
 	t->mean = mean;
 	t->sd = fmax(sqrt(square / n), 0.01);
 	t->width = 1.06 * t->sd * pow(n, -0.2);
@@ -212,7 +204,7 @@ static double shape_probability(const struct together *t, double x)
 {
 	double weak = 1, strong = 1, seen = 0, others = unlike(t, x), random;
 
-	for (size_t i = 0; i < held(t->rows); i++) {
+	for (size_t i = 0; i < evidence_kept(t->rows); i++) {
 		double here = kernel(x - t->row[i].size, t->width);
 
 		if (t->row[i].weak)
@@ -236,14 +228,14 @@ static double least_alone(const struct together *t)
 {
 	double least = INFINITY, alone = 0, company = 0, chance = 1;
 
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (t->alone[i]) {
 			least = fmin(least, t->any[i]);
 			alone++;
 		} else {
 			company++;
 		}
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (!t->alone[i] && t->any[i] < least) {
 			chance *= company / (alone + company);
 			company--;
@@ -284,7 +276,7 @@ static void learn_astray(struct together *t)
 	for (int step = 0; step < STEPS; step++) {
 		double sum = 0, square = 0, n = 0;
 
-		for (size_t i = 0; i < held(t->rows); i++)
+		for (size_t i = 0; i < evidence_kept(t->rows); i++)
 			if (t->row[i].off_var > 0) {
 				double p = astray_probability(
 					t, t->row[i].off, t->row[i].off_var);
@@ -297,7 +289,7 @@ static void learn_astray(struct together *t)
 		t->astray = fmin(sum / fmax(n, 1), 0.5);
 		t->flow_var = fmax(square / fmax(n - sum, 1), t->least_var);
 	}
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		if (t->row[i].off_var > 0)
 			gain += 2 * log(1 - t->astray +
 					    t->astray * astray_odds(t, t->row[i].off,
@@ -310,8 +302,8 @@ static void learn_astray(struct together *t)
  * wrong. */
 static double find_limit(const struct together *t)
 {
-	double sorted[LATELY], sum = 0;
-	size_t n = held(t->rows), k = 0;
+	double sorted[EVIDENCE_KEPT], sum = 0;
+	size_t n = evidence_kept(t->rows), k = 0;
 
 	for (size_t i = 0; i < n; i++)
 		sorted[i] = t->row[i].wrong;
@@ -329,7 +321,7 @@ enum { PASSES = 4 };
 static void tell(struct together *t, size_t first)
 {
 	for (; first < t->rows; first++) {
-		size_t self = first % LATELY;
+		size_t self = first % EVIDENCE_KEPT;
 		struct evidence *r = &t->row[self];
 
 		r->pair = pair_probability(t, self);
@@ -352,15 +344,15 @@ static void test_some(
 	size_t first = t->rows;
 
 	for (size_t i = begin; i < end; i++) {
-		t->followers[t->all % LATELY] = count_followers(a, i, n);
-		t->alone[t->all % LATELY] = a[i].alone;
-		t->any[t->all++ % LATELY] = a[i].size;
+		t->followers[t->all % EVIDENCE_KEPT] = count_followers(a, i, n);
+		t->alone[t->all % EVIDENCE_KEPT] = a[i].alone;
+		t->any[t->all++ % EVIDENCE_KEPT] = a[i].size;
 		a[i].wrong = a[i].pair = 0;
 		if (a[i].doubted)
 			continue;
 		if (a[i].off_var > 0)
 			t->least_var = a[i].flow_var;
-		t->row[t->rows++ % LATELY] = a[i];
+		t->row[t->rows++ % EVIDENCE_KEPT] = a[i];
 	}
 	if (t->rows == first)
 		return;
@@ -373,7 +365,7 @@ static void test_some(
 	t->limit = find_limit(t);
 	for (size_t i = begin; i < end; i++)
 		if (!a[i].doubted) {
-			a[i] = t->row[first++ % LATELY];
+			a[i] = t->row[first++ % EVIDENCE_KEPT];
 			a[i].doubted = a[i].wrong > t->limit;
 		}
 }
@@ -390,6 +382,6 @@ void together_test(struct together *t, double beside, struct evidence *a, size_t
 		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}
-	for (size_t i = 0; i < n; i += LATELY)
-		test_some(t, a, n, i, n - i < LATELY ? n : i + LATELY);
+	for (size_t i = 0; i < n; i += EVIDENCE_KEPT)
+		test_some(t, a, n, i, n - i < EVIDENCE_KEPT ? n : i + EVIDENCE_KEPT);
 }
