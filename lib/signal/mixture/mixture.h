@@ -31,9 +31,8 @@
 enum { MIXTURE_SOURCES = HISTOGRAM_PEAKS };
 
 struct mixture_par {
-	size_t window,
-		hop; /* of the transform, samples: window even, hop to half of it */
-	int sources; /* how many to find; 0: as many as there are peaks */
+	size_t window, hop; /* of the transform, samples: even, and up to half of it */
+	int sources;        /* how many to find; 0: as many as there are peaks */
 	void (*progress)(long done, long windows); /* called as they are transformed; or
 						  NULL */
 };

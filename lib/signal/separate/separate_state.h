@@ -102,9 +102,9 @@ struct separate {
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
-				   standard errors */
-	double gain_sum, gain_weight;
+	/* Of the last GAINS such pulses or fewer: sums of the relative deviations of the
+	 * gain in standard errors, of these by their weights, and of the weights. */
+	double gain_off, gain_sum, gain_weight;
 	int gains;
 	long number;
 	long long done; /* samples before this one are done */
