@@ -14,12 +14,6 @@
  *	least |a_k exp(-i w delta_k) X1 - X2|^2 / (1 + a_k^2),
  *
  * so that the sources add up to channel 1.  The record is kept: 16 bytes a frame.
- *
- *	struct mixture *m = mixture_new(&par);
- *	while ((n = read(x)) > 0)
- *		mixture_push(m, x, n);
- *	count = mixture_find(m, source);
- *	mixture_separate(m, y);
  */
 #ifndef SIGNAL_MIXTURE_H
 #define SIGNAL_MIXTURE_H
