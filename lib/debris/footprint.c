@@ -1,6 +1,7 @@
 #include "debris/footprint.h"
 #include "debris/debris.h"
 #include "debris/reserve.h"
+#include "num/lesser.h"
 #include "num/room.h"
 #include "stress/point_sum.h"
 
@@ -154,13 +155,13 @@ static void take_node(struct footprints *f, struct footprint *r, struct stress_n
 	double x = n.ix * s->dx, y = n.iy * s->dy;
 
 	r->cells++;
-	r->stress = fmax(r->stress, n.value);
+	r->stress = larger_double(r->stress, n.value);
 	r->x += x + 0.5 * s->dx;
 	r->y += y + 0.5 * s->dy;
-	r->low[0] = fmin(r->low[0], x);
-	r->low[1] = fmin(r->low[1], y);
-	r->high[0] = fmax(r->high[0], x + s->dx);
-	r->high[1] = fmax(r->high[1], y + s->dy);
+	r->low[0] = lesser_double(r->low[0], x);
+	r->low[1] = lesser_double(r->low[1], y);
+	r->high[0] = larger_double(r->high[0], x + s->dx);
+	r->high[1] = larger_double(r->high[1], y + s->dy);
 }
 
 /* The regions in the order of their first nodes. */

@@ -127,12 +127,13 @@ struct point {
 	const struct tile *tile;
 	int ix, iy; /* -1: none */
 	float x, y;
-	float u, v;                      /* from the tile's, along and across the shear */
-	struct loads *points;            /* near it, from there */
-	int count;                       /* of them */
-	float nearest;                   /* the distance squared */
-	int flat_points;                 /* depths to which all act in proportion */
-	struct element element[OFFSETS]; /* nearest */
+	float u, v;           /* from the tile's, along and across the shear */
+	struct loads *points; /* near it, from there */
+	int count;            /* of them */
+	float nearest;        /* the distance squared */
+	int flat_points;      /* depths to which all act in proportion */
+	/* Nearest, and one of no load where their number is odd. */
+	struct element element[OFFSETS + 1];
 	int elements;
 	struct flat flat[SHALLOW]; /* all that acts in proportion to the depth */
 };
@@ -174,7 +175,7 @@ static int halves(int n)
 
 static double depth_of(int k)
 {
-	return ldexp(k % 2 ? SHALLOWEST * M_SQRT2 : SHALLOWEST, k / 2);
+	return (k % 2 ? SHALLOWEST * M_SQRT2 : SHALLOWEST) * (double)(1LL << k / 2);
 }
 
 /* Two depths share what is summed from squares, and how. */
@@ -724,6 +725,7 @@ static void find_point(struct point_sum *s, int ix, int iy, int deep)
 	at->nearest = INFINITY;
 	for (int i = 0; i < at->tile->near; i++)
 		list_block(s, at, &at->tile->block[i]);
+	at->element[at->elements] = (struct element){ 0, 0 };
 	x = at->x - at->tile->x;
 	y = at->y - at->tile->y;
 	at->u = s->par.axis ? y : x;
@@ -741,7 +743,7 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 	const struct point *at = &s->point;
 	const struct tile *tile = at->tile;
 	struct sums t = { .xx = { 0 } };
-	eight e = { 0 };
+	eight e = { 0 }, other = { 0 };
 	float z = (float)depth_of(k);
 	int level = level_of(k);
 
@@ -757,8 +759,14 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 		t.xy += flat->xy + z * flat->rise.xy;
 		t.xz += z * flat->rise.xz;
 		t.yz += z * flat->rise.yz;
-		for (int i = 0; i < at->elements; i++)
-			e += at->element[i].load * effect[at->element[i].offset].number;
+		/* The processor adds to the two side by side. */
+		for (int i = 0; i < at->elements; i += 2) {
+			const struct element *a = &at->element[i];
+
+			e += a[0].load * effect[a[0].offset].number;
+			other += a[1].load * effect[a[1].offset].number;
+		}
+		e += other;
 	}
 	memcpy(number, &e, sizeof e);
 	number[DEV_X] += sum_eight(s->par.axis ? &t.yy : &t.xx);
