@@ -17,12 +17,6 @@
  * delta.  To the same chi-square gsl_multifit_nlinear, which needs the whole Jacobian,
  * takes 4 to 60 times as long, and gsl_multilarge_nlinear with a normal matrix made like
  * ours 1.1 to 1.7 times (tests/bench/solvers.c).
- *
- *	struct joint *j = joint_new();
- *	int m = 0;
- *	if (joint_fit(j, &scene, y1, y2, n, pulses, &m, &result) == JOINT_OK)
- *		...
- *	joint_free(j);
  */
 #ifndef SIGNAL_JOINT_H
 #define SIGNAL_JOINT_H

@@ -94,17 +94,17 @@ struct separate {
 	enum window window;
 	size_t span;           /* longest window if SHORTER */
 	int failures;          /* consecutive windows that were not resolved */
-	int strange;           /* DENSE although the section is short */
-	long long shock_end;   /* of the last one that began in two sections */
-	int same_shock;        /* the event found is that one */
+	int strange;           /* 1: DENSE although the section is short */
+	long long shock_end;   /* of the last shock that was found by one of its halves */
+	int same_shock;        /* 1: the event found is its other half */
 	unsigned char *spikes; /* flags of impulses */
 	size_t spike_room;
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
-				   standard errors */
-	double gain_sum, gain_weight;
+	/* Of the last GAINS such pulses or fewer: sums of the relative deviations of the
+	 * gain in standard errors, of these by their weights, and of the weights. */
+	double gain_off, gain_sum, gain_weight;
 	int gains;
 	long number;
 	long long done; /* samples before this one are done */
