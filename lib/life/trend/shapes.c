@@ -24,6 +24,7 @@ static const struct bank_shape table[] = {
 	{ .family = BANK_EXPONENTIAL, .scale = 0.05, .par = 1, .log_prior = 1.1 },
 	{ .family = BANK_EXPONENTIAL, .scale = 0.12, .par = 1, .log_prior = -0.8 },
 	{ .family = BANK_POWER, .scale = 0.05, .par = -1, .log_prior = 1 },
+	{ .family = BANK_POWER, .scale = 0.3, .par = 1.5, .log_prior = -2.8 },
 	{ .family = BANK_POWER, .scale = 0.3, .par = 2, .log_prior = 3.1 },
 	SATURATING(0, 0.99, 1, -2),
 	SATURATING(0, 0.8, 1, -1.5),
