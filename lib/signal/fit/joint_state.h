@@ -59,7 +59,6 @@ struct joint {
 	int all[JOINT_PULSES_MAX]; /* 0, 1, 2, ...: the set of all pulses */
 	double *h;                 /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
-	int begin[NPAR];         /* first nonzero of each row */
 	double energy;           /* e^T e of both channels, ... */
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */

@@ -3,10 +3,8 @@
 #include <string.h>
 
 /* J_i^T J_k of two pulses, added to block. */
-static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
+static void add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
 {
-	int touch = 0;
-
 	for (int c = 0; c < 2; c++) {
 		const struct column *x = &j->col[i][c], *y = &j->col[k][c];
 		long first = x->first > y->first ? x->first : y->first;
@@ -17,7 +15,6 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 
 		if (end <= first)
 			continue;
-		touch = 1;
 		for (int u = 0; u < PAR; u++) {
 			xd[u] = x->d[u] + (first - x->first);
 			yd[u] = y->d[u] + (first - y->first);
@@ -27,7 +24,6 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
 				block[u][v] += part[u][v];
 	}
-	return touch;
 }
 
 /* Inner products of vector b of a channel's basis with the three columns of a pulse. */
@@ -73,17 +69,13 @@ static void make_normal(struct joint *j, const int *set, int m)
 				}
 			}
 		}
-		for (int u = 0; u < PAR; u++)
-			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
 		for (int y = 0; y <= x; y++) {
 			double block[PAR][PAR] = { { 0 } };
-			int touch = add_block(j, i, set[y], block);
 
+			add_block(j, i, set[y], block);
 			for (int u = 0; u < PAR; u++) {
 				int row = PAR * x + u;
 
-				if (touch && j->begin[row] > PAR * y)
-					j->begin[row] = PAR * y;
 				for (int v = 0; v < (x == y ? u + 1 : PAR); v++)
 					j->h[row * np + PAR * y + v] =
 						block[u][v] -
@@ -97,21 +89,18 @@ static void make_normal(struct joint *j, const int *set, int m)
 		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h) within the profile, the rows of a pulse together;
- * NUM_DOMAIN where not positive definite. */
+/* Cholesky of h + lambda diag(h), the rows of a pulse together; NUM_DOMAIN where not
+ * positive definite. */
 static enum num_status factorise(struct joint *j, int np, double lambda)
 {
 	for (int first = 0; first < np; first += PAR) {
 		double *row = j->factor + (size_t)first * (size_t)np, part[PAR];
-		int begin = j->begin[first];
 
-		for (int k = begin; k < first; k++) {
+		for (int k = 0; k < first; k++) {
 			const double *other = j->factor + (size_t)k * (size_t)np;
-			int from = begin > j->begin[k] ? begin : j->begin[k];
-			const double *rows[] = { row + from, row + np + from,
-				row + 2 * np + from };
+			const double *rows[] = { row, row + np, row + 2 * np };
 
-			dot3(other + from, rows, (size_t)(k - from), part);
+			dot3(other, rows, (size_t)k, part);
 			for (int u = 0; u < PAR; u++)
 				row[u * np + k] =
 					(j->h[(first + u) * np + k] - part[u]) / other[k];
@@ -122,12 +111,10 @@ static enum num_status factorise(struct joint *j, int np, double lambda)
 			for (int k = first; k < i; k++) {
 				const double *other = row - (i - k) * np;
 
-				row[k] = (j->h[i * np + k] -
-						 dot(row + begin, other + begin,
-							 (size_t)(k - begin))) /
+				row[k] = (j->h[i * np + k] - dot(row, other, (size_t)k)) /
 					 other[k];
 			}
-			pivot -= dot(row + begin, row + begin, (size_t)(i - begin));
+			pivot -= dot(row, row, (size_t)i);
 			if (!(pivot > 1e-13 * j->diagonal[i]))
 				return NUM_DOMAIN;
 			row[i] = sqrt(pivot);
@@ -140,9 +127,8 @@ void joint_reduce(const struct joint *j, int np, int start, double *x)
 {
 	for (int i = start; i < np; i++) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
-		int from = j->begin[i] > start ? j->begin[i] : start;
 
-		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
+		x[i] = (x[i] - dot(row + start, x + start, (size_t)(i - start))) / row[i];
 	}
 }
 
@@ -154,8 +140,7 @@ static void solve(const struct joint *j, int np, int start, double *x)
 		const double *row = j->factor + (size_t)i * (size_t)np;
 
 		x[i] /= row[i];
-		add_scaled(x + j->begin[i], -x[i], row + j->begin[i],
-			(size_t)(i - j->begin[i]));
+		add_scaled(x, -x[i], row, (size_t)i);
 	}
 }
 
