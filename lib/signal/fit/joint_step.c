@@ -1,4 +1,5 @@
 /* joint_step.c - Levenberg-Marquardt fit of some of the pulses; see joint_state.h */
+#include "num/cholesky.h"
 #include "signal/fit/joint_state.h"
 #include <string.h>
 
@@ -85,42 +86,16 @@ static void make_normal(struct joint *j, const int *set, int m)
 			}
 		}
 	}
-	for (int i = 0; i < np; i++)
-		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h), the rows of a pulse together; NUM_DOMAIN where not
- * positive definite. */
-static enum num_status factorise(struct joint *j, int np, double lambda)
+/* Cholesky of h + lambda diag(h); NUM_DOMAIN where not positive definite. */
+static enum num_status factorise(struct joint *j, size_t np, double lambda)
 {
-	for (int first = 0; first < np; first += PAR) {
-		double *row = j->factor + (size_t)first * (size_t)np, part[PAR];
-
-		for (int k = 0; k < first; k++) {
-			const double *other = j->factor + (size_t)k * (size_t)np;
-			const double *rows[] = { row, row + np, row + 2 * np };
-
-			dot3(other, rows, (size_t)k, part);
-			for (int u = 0; u < PAR; u++)
-				row[u * np + k] =
-					(j->h[(first + u) * np + k] - part[u]) / other[k];
-		}
-		for (int i = first; i < first + PAR; i++, row += np) {
-			double pivot = j->h[i * np + i] + lambda * j->diagonal[i];
-
-			for (int k = first; k < i; k++) {
-				const double *other = row - (i - k) * np;
-
-				row[k] = (j->h[i * np + k] - dot(row, other, (size_t)k)) /
-					 other[k];
-			}
-			pivot -= dot(row, row, (size_t)i);
-			if (!(pivot > 1e-13 * j->diagonal[i]))
-				return NUM_DOMAIN;
-			row[i] = sqrt(pivot);
-		}
+	for (size_t i = 0; i < np; i++) {
+		memcpy(j->factor + i * np, j->h + i * np, (i + 1) * sizeof *j->h);
+		j->factor[i * np + i] += lambda * j->h[i * np + i];
 	}
-	return NUM_OK;
+	return cholesky_factor(j->factor, np, np, 1e-13);
 }
 
 void joint_reduce(const struct joint *j, int np, int start, double *x)
@@ -272,7 +247,7 @@ double joint_fit_set(
 			make_normal(j, set, m);
 		fresh = 1;
 		j->result.steps++;
-		if (factorise(j, PAR * m, lambda) != NUM_OK) {
+		if (factorise(j, PAR * (size_t)m, lambda) != NUM_OK) {
 			lambda = lambda * 10 + 1e-3;
 			continue;
 		}
@@ -308,7 +283,7 @@ enum num_status joint_factorise(struct joint *j, const int *set, int m)
 	for (int x = 0; x < m; x++)
 		joint_make_columns(j, set[x]);
 	make_normal(j, set, m);
-	return factorise(j, PAR * m, 0);
+	return factorise(j, PAR * (size_t)m, 0);
 }
 
 void joint_fill_covariance(struct joint *j)
