@@ -50,7 +50,6 @@ static void make_normal(struct joint *j, const int *set, int m)
 
 	for (int x = 0; x < m; x++) {
 		int i = set[x];
-
 		double *g = j->gradient + PAR * x, part[PAR];
 
 		g[0] = g[1] = g[2] = 0;
