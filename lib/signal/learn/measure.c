@@ -382,14 +382,14 @@ static enum separate_status follows(const struct record *rec, const double *y1,
 	return check_lag(rec, y1, y2, &other);
 }
 
-/* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
- * than half of the power of the channels. */
+/* SWAPPED if particles seem to pass sensor 2 first.  Tested only if the lag found
+ * explains less than half of the power of the channels. */
 static enum separate_status find_reverse(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	enum separate_status status;
 
-	if (!isnan(par->lag) || c->correlation > 0.5)
+	if (!isnan(par->lag) || par->in_order || c->correlation > 0.5)
 		return SEPARATE_OK;
 	status = follows(rec, rec->y2, rec->y1, c);
 	return status == SEPARATE_OK       ? SEPARATE_SWAPPED
