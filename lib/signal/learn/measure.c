@@ -512,7 +512,7 @@ static enum separate_status find_template(const struct calibrate_par *par,
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
 		double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
-		struct template other = { .alone = found->alone };
+		struct template other = { .alone = found->alone, .white = found->white };
 
 		if (T < SHAPE_SHORTEST)
 			break;
@@ -662,6 +662,8 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		c->presumed_white = look->coloured;
 	}
 	look->found.alone = look->first && c->whitening.tap;
+	look->found.white = c->whitening.tap || !look->coloured ||
+			    measure_white_above(look, c->duration);
 	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))
 		status = find_template(par, &rec, &look->found, c);
 	if (status == SEPARATE_OK && look->first && look->coloured &&
