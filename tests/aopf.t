@@ -253,14 +253,11 @@ is "lives that are not predicted are counted" \
 # Run-in: a bump of a third of the way that dies out by t = 60
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 400; t++)
 	printf "%d\t%.9g\n", t, t / 1000 + 0.3 * exp(-(t - 20) ^ 2 / 200) + 0.01 * sin(t * t) }' >bump.tsv
-aopf --threshold 1 --direction up --model linear --skip auto -S auto.stats bump.tsv >auto.tsv
-ok "a run-in is detected" test "$(column run_ins auto.stats)" -ge 1
-near "the detected run-in is left out of the prediction" "$(column rul_q50 auto.tsv | tail -1)" 601 30
 aopf --threshold 1 --direction up --model linear --skip 60 -S skip.stats bump.tsv >skip.tsv
 is "a specified run-in is skipped" "$(column rows_skipped skip.stats)" 60
 near "a specified run-in gives the same end of life" "$(column rul_q50 skip.tsv | tail -1)" 601 30
-aopf -y 2.8 --skip auto -S exp.stats exp.tsv >/dev/null
-is "a rising series has no run-in" "$(column run_ins exp.stats)" 0
+aopf --threshold 1 --direction up --model average --lives-only bump.tsv >all.tsv
+near "without being told, the bank forgets a run-in" "$(column rul_q50 all.tsv | tail -1)" 601 60
 
 # Fleet: units of one shape and different speed, with noise of 0.5 % of the way.
 wear() {

@@ -1,6 +1,7 @@
 #include "debris/footprint.h"
 #include "debris/debris.h"
 #include "debris/reserve.h"
+#include "num/lesser.h"
 #include "num/room.h"
 #include "stress/point_sum.h"
 
@@ -14,6 +15,14 @@
  * without SHARE and with 1, 1.25 and 1.5 times the root, and of 2 % with SHARE; of four
  * that lose 9900 columns 2.2, 1.2 and 1.0 %. */
 enum { LEAST = 4, SHARE = 250 };
+
+/* Cells of a surface at which the sums are checked, or all that fail.  Intervals of 90 %
+ * hold .91, .91, .91 and .92 of 11 300 particles of 150 kinds with 16, 24, 32 and 48. */
+enum { CHECKS = 24 };
+/* Relative error of careful sums.  With 1e-5, 3e-5 and 1e-4 intervals of 90 % hold .91,
+ * .90 and .90 of these particles, .93, .92 and .91 of 5500 on rough surfaces, and .94,
+ * .96 and .94 and .91, .89 and .78 of the total volumes. */
+static const double CAREFUL_ERROR = 3e-5;
 
 /* Reserve above which every depth is looked at.  The volumes of 441 surfaces have rms
  * errors of .74, .74 and .81 % with 0, .8 and .9, and of 1.8 % with every other depth. */
@@ -30,7 +39,9 @@ struct footprints {
 	struct stress_span *span;
 	double yield;
 	struct point_sum *below;
-	int deepest; /* depths that are allowed */
+	int deepest;           /* depths that are allowed */
+	double passed, checks; /* cells */
+	double squares;        /* of the relative errors of stresses below these */
 	struct footprint *list;
 	size_t count;
 	size_t spare_room, region_room, cell_room, next_room, list_room;
@@ -144,13 +155,13 @@ static void take_node(struct footprints *f, struct footprint *r, struct stress_n
 	double x = n.ix * s->dx, y = n.iy * s->dy;
 
 	r->cells++;
-	r->stress = fmax(r->stress, n.value);
+	r->stress = larger_double(r->stress, n.value);
 	r->x += x + 0.5 * s->dx;
 	r->y += y + 0.5 * s->dy;
-	r->low[0] = fmin(r->low[0], x);
-	r->low[1] = fmin(r->low[1], y);
-	r->high[0] = fmax(r->high[0], x + s->dx);
-	r->high[1] = fmax(r->high[1], y + s->dy);
+	r->low[0] = lesser_double(r->low[0], x);
+	r->low[1] = lesser_double(r->low[1], y);
+	r->high[0] = larger_double(r->high[0], x + s->dx);
+	r->high[1] = larger_double(r->high[1], y + s->dy);
 }
 
 /* The regions in the order of their first nodes. */
@@ -278,6 +289,23 @@ static struct loss loss_below(const struct footprints *f, struct stress_node n)
 	return (struct loss){ NAN, NAN };
 }
 
+/* Checks the sums at one of evenly spread cells; this one stands for so many. */
+static void check(
+	struct footprints *f, struct stress_node n, struct loss loss, double cells)
+{
+	double step = fmax(1, (double)f->nodes / CHECKS), off;
+	double place = floor(f->passed / step + 0.5);
+
+	f->passed += cells;
+	if (floor(f->passed / step + 0.5) == place)
+		return;
+	point_sum_take_care(f->below, 1);
+	off = loss_below(f, n).depth - loss.depth;
+	point_sum_take_care(f->below, 0);
+	f->checks++;
+	f->squares += off * off / (loss.change * loss.change);
+}
+
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
 	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 }, first = 0,
@@ -291,9 +319,11 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	start -= floor(start);
 	turn_rows(f, cell, r->cells);
 	for (size_t i = 0; i < m; i++) {
-		struct loss loss = loss_below(
-			f, f->node[cell[(size_t)(((double)i + start) * n / (double)m)]]);
+		size_t at = (size_t)(((double)i + start) * n / (double)m);
+		struct loss loss = loss_below(f, f->node[cell[at]]);
 		double bend;
+
+		check(f, f->node[cell[at]], loss, n / (double)m);
 
 		depth[2] = depth[1];
 		depth[1] = depth[0];
@@ -331,8 +361,12 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 		find_regions(f))
 		return NUM_MEMORY;
 	point_sum_load(f->below, pressure);
+	f->passed = f->checks = f->squares = 0;
 	for (size_t i = 0; i < f->count; at += f->list[i++].cells)
 		measure(f, &f->list[i], f->cell + at);
+	for (size_t i = 0; i < f->count; i++)
+		f->list[i].sums = f->list[i].change *
+				  hypot(CAREFUL_ERROR, sqrt(f->squares / f->checks));
 	if (f->count > 0) /* else there may be no list */
 		qsort(f->list, f->count, sizeof *f->list, by_size);
 	*list = f->list;

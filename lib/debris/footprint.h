@@ -6,8 +6,9 @@
  * The volume of each is its area times the mean depth of the loss below some of its
  * cells, found by direct sums (point_sum.h): all cells of small regions and of surfaces
  * that lose few columns, of others every so many in the order of rows.  How much the
- * depth varies from one to the next gives the standard error.  What the sums are off
- * by changes the volume as much as the depth of the yield stress changes with the stress.
+ * depth varies from one to the next gives the standard error.  What the sums are off by
+ * is found at some cells of the surface, by careful sums; it changes a volume as much as
+ * the depth of the yield stress changes with the stress.
  */
 #ifndef DEBRIS_FOOTPRINT_H
 #define DEBRIS_FOOTPRINT_H
@@ -29,6 +30,7 @@ struct footprint {
 	double freedom; /* degrees of freedom of that */
 	double change; /* of the volume by a relative one of the stress below it, to first
 			* order, m3 */
+	double sums;   /* standard error of the volume by the direct sums, m3 */
 };
 
 struct footprints;

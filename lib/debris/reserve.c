@@ -1,10 +1,11 @@
 #include "debris/reserve.h"
+#include "num/lesser.h"
 
 #include <math.h>
 
 double reserve(double yield, double stress)
 {
-	return sqrt(yield / fmax(stress, 1e-6 * yield));
+	return sqrt(yield / larger_double(stress, 1e-6 * yield));
 }
 
 /* Between two depths, the last one after so many. */
@@ -40,11 +41,21 @@ double reserve_crossing(const struct reserve *r)
 	return z1 + fmin(fmax(s, 0), step);
 }
 
+/* Whether the parabola stays below 1.  It exceeds the reserves at the ends of a step h by
+ * at most h^2 / 4 times half its second derivative, which for steps of ratios up to 2.5
+ * is less than half of the sum of both changes. */
+static int is_far(const struct reserve *r)
+{
+	double most = larger_double(larger_double(r->g[0], r->g[1]), r->g[2]);
+
+	return most + 0.5 * (fabs(r->g[0] - r->g[1]) + fabs(r->g[1] - r->g[2])) < 1;
+}
+
 double reserve_dip(const struct reserve *r)
 {
 	double z0 = r->z[2], z1 = r->z[1], z2 = r->z[0], bend, b, c, most;
 
-	if (r->depths < 3)
+	if (r->depths < 3 || is_far(r))
 		return -1;
 	bend = bend_of(r);
 	/* g0 + b s + bend s^2 - 1 */

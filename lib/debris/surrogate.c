@@ -6,30 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A hundred surfaces leave 40 scores: coverage of 90 % then varies by 5 % (standard
+/* A hundred surfaces leave 80 scores: coverage of 90 % then varies by 3 % (standard
  * deviation) from one surrogate to another. */
 enum { LEAST = 100 };
 const char *const surrogate_property_names[] = { "flow", "lay", "oblique", "friction",
 	"poisson" };
 
-enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
 
-/* Of direct sums in single precision. */
-static const double ROUNDING = 1e-5;
-/* Errors of the sums have longer tails than those of cells left out, which are about
- * normal, and are up to twice as large on some kinds of surfaces as on others: a normal
- * distribution describes them that has their bound of this share, so many standard
- * deviations away.  Of 320 rough surfaces of which every cell was measured intervals of
- * 90 % hold 247 with the bound of .9 (1.645) and 280 with that of .95. */
-static const double TAIL = 0.95, TAIL_BOUND = 1.96;
-
-static enum part part_of(long place)
-{
-	return place % 5 < 2 ? FIT : place % 5 < 4 ? CALIBRATE : CHECK;
-}
-
-static void find_range(const struct surrogate_sample *sample, const char *part, size_t n,
+static void find_range(const struct surrogate_sample *sample, const char *held, size_t n,
 	struct surrogate *s)
 {
 	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
@@ -38,7 +23,7 @@ static void find_range(const struct surrogate_sample *sample, const char *part, 
 		*least = INFINITY;
 		*most = -INFINITY;
 		for (size_t i = 0; i < n; i++) {
-			if (part[i] != FIT)
+			if (held[i])
 				continue;
 			*least = fmin(*least, sample[i].contact.property[k]);
 			*most = fmax(*most, sample[i].contact.property[k]);
@@ -85,7 +70,7 @@ double surrogate_highest_level(const struct surrogate *s)
 /* Some or all regions of a surface.  The errors of cells left out are independent, those
  * of the sums have a cause in common. */
 struct sum {
-	double volume, squares, fourths, change;
+	double volume, squares, fourths, sums;
 };
 
 static void add_to(struct sum *sum, const struct footprint *f)
@@ -95,7 +80,7 @@ static void add_to(struct sum *sum, const struct footprint *f)
 	sum->volume += f->volume;
 	sum->squares += square;
 	sum->fourths += square > 0 ? square * square / f->freedom : 0;
-	sum->change += f->change;
+	sum->sums += f->sums;
 }
 
 /* By how much the 90 % quantile of Student's distribution exceeds that of the normal one
@@ -110,28 +95,26 @@ static double student(double freedom)
 
 /* Of the logarithm of a volume, in terms of the normal distribution.  The degrees of
  * freedom of a sum are those of Welch (1947). */
-static double deviation_of(const struct surrogate *s, const struct sum *sum,
-	const struct surrogate_contact *contact)
+static double deviation_of(const struct sum *sum)
 {
 	double left_out = 0;
 
 	if (sum->squares > 0)
 		left_out = sqrt(sum->squares) *
 			   student(sum->squares * sum->squares / sum->fourths);
-	return hypot(left_out, s->sums * contact->pressure * sum->change) / sum->volume;
+	return hypot(left_out, sum->sums) / sum->volume;
 }
 
-static double deviation_of_one(const struct surrogate *s, const struct footprint *f,
-	const struct surrogate_contact *contact)
+static double deviation_of_one(const struct footprint *f)
 {
 	struct sum sum = { 0 };
 
 	add_to(&sum, f);
-	return deviation_of(s, &sum, contact);
+	return deviation_of(&sum);
 }
 
 struct loaded {
-	double cells, flowing, square;
+	double cells, flowing;
 };
 
 static struct loaded find_loaded(const double *pressure, size_t cells, double hardness)
@@ -144,7 +127,6 @@ static struct loaded find_loaded(const double *pressure, size_t cells, double ha
 
 		l.cells += p > 0;
 		l.flowing += p > 0 && hardness > 0 && p >= hardness;
-		l.square += p * p;
 	}
 	return l;
 }
@@ -170,8 +152,8 @@ static void add_gradients(
 	}
 }
 
-struct surrogate_contact surrogate_contact(const struct stress_par *par,
-	const double *pressure, double yield, double hardness)
+struct surrogate_contact surrogate_contact(
+	const struct stress_par *par, const double *pressure, double hardness)
 {
 	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 	struct loaded l = find_loaded(pressure, nx * ny, hardness);
@@ -190,7 +172,6 @@ struct surrogate_contact surrogate_contact(const struct stress_par *par,
 			[SURROGATE_OBLIQUE] = 2 * fabs(xy) / sum,
 			[SURROGATE_FRICTION] = fabs(par->mu),
 			[SURROGATE_POISSON] = par->nu },
-		.pressure = sqrt(l.square / (double)(nx * ny)) / yield,
 	};
 }
 
@@ -224,13 +205,13 @@ int surrogate_guess(const struct surrogate *s, const struct footprint *footprint
 	if (count == 0)
 		return 1;
 	for (size_t i = 0; i < count; i++) {
-		guess[i] = guess_of(footprint[i].volume,
-			one * deviation_of_one(s, &footprint[i], contact));
+		guess[i] = guess_of(
+			footprint[i].volume, one * deviation_of_one(&footprint[i]));
 		add_to(&sum, &footprint[i]);
 	}
-	if (!isfinite(sum.volume))
+	if (!isfinite(sum.volume + sum.sums))
 		return 0;
-	*total = guess_of(sum.volume, all * deviation_of(s, &sum, contact));
+	*total = guess_of(sum.volume, all * deviation_of(&sum));
 	return 1;
 }
 
@@ -245,8 +226,7 @@ static size_t surface_end(const struct surrogate_sample *sample, size_t n, size_
 }
 
 /* For a surface: ln of the true over the estimated total, and its deviation. */
-static double total_error(const struct surrogate *s, const struct surrogate_sample *x,
-	size_t n, double *deviation)
+static double total_error(const struct surrogate_sample *x, size_t n, double *deviation)
 {
 	struct sum sum = { 0 };
 	double truth = 0;
@@ -255,55 +235,35 @@ static double total_error(const struct surrogate *s, const struct surrogate_samp
 		truth += x[i].volume;
 		add_to(&sum, &x[i].footprint);
 	}
-	*deviation = deviation_of(s, &sum, &x->contact);
+	*deviation = deviation_of(&sum);
 	return log(truth / sum.volume);
 }
 
-/* How far the sums are off: from the regions of which every cell was measured. */
-static double find_sums(
-	const struct surrogate_sample *sample, const char *part, size_t n, double *error)
-{
-	size_t count = 0;
-
-	for (size_t i = 0; i < n; i++) {
-		const struct surrogate_sample *x = &sample[i];
-		const struct footprint *f = &x->footprint;
-
-		if (part[i] == FIT && f->error == 0 && f->change > 0)
-			error[count++] = fabs(x->volume - f->volume) /
-					 (f->change * x->contact.pressure);
-	}
-	qsort(error, count, sizeof *error, ascending);
-	return fmax(ROUNDING,
-		count > 0 ? error[(size_t)(TAIL * (double)count)] / TAIL_BOUND : 0);
-}
-
-static void calibrate(const struct surrogate_sample *sample, const char *part, size_t n,
+static void calibrate(const struct surrogate_sample *sample, const char *held, size_t n,
 	struct surrogate *s, double *score)
 {
 	size_t count = 0, end;
 
 	for (size_t i = 0; i < n; i++)
-		if (part[i] == CALIBRATE)
+		if (!held[i])
 			score[count++] =
 				fabs(log(sample[i].volume / sample[i].footprint.volume)) /
-				deviation_of_one(
-					s, &sample[i].footprint, &sample[i].contact);
+				deviation_of_one(&sample[i].footprint);
 	s->particles = keep_scores(score, count, s->particle);
 	count = 0;
 	for (size_t i = 0; i < n; i = end) {
 		double deviation, error;
 
 		end = surface_end(sample, n, i);
-		if (part[i] != CALIBRATE)
+		if (held[i])
 			continue;
-		error = total_error(s, sample + i, end - i, &deviation);
+		error = total_error(sample + i, end - i, &deviation);
 		score[count++] = fabs(error) / deviation;
 	}
 	s->totals = keep_scores(score, count, s->total);
 }
 
-static void check(const struct surrogate_sample *sample, const char *part, size_t n,
+static void check(const struct surrogate_sample *sample, const char *held, size_t n,
 	const struct surrogate *s, struct surrogate_report *r)
 {
 	double size = bound(s->total, s->totals, SURE), squares = 0;
@@ -313,9 +273,9 @@ static void check(const struct surrogate_sample *sample, const char *part, size_
 		double deviation, error;
 
 		end = surface_end(sample, n, i);
-		if (part[i] != CHECK)
+		if (!held[i])
 			continue;
-		error = total_error(s, sample + i, end - i, &deviation);
+		error = total_error(sample + i, end - i, &deviation);
 		r->within += fabs(error) <= size * deviation;
 		r->width += size * deviation;
 		squares += error * error;
@@ -328,34 +288,32 @@ static void check(const struct surrogate_sample *sample, const char *part, size_
 enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
 	struct surrogate *s, struct surrogate_report *report)
 {
-	char *part = malloc(n + 1);
+	char *held = malloc(n + 1);
 	double *score = malloc((n + 1) * sizeof *score);
 	size_t end;
 	long place = 0;
 
 	memset(s, 0, sizeof *s);
 	memset(report, 0, sizeof *report);
-	if (!part || !score) {
-		free(part);
+	if (!held || !score) {
+		free(held);
 		free(score);
 		return SURROGATE_MEMORY;
 	}
 	for (size_t i = 0; i < n; i = end, place++) {
-		enum part p = part_of(place);
+		int last = place % 5 == 4;
 
 		end = surface_end(sample, n, i);
-		memset(part + i, (int)p, end - i);
-		report->fitted += p == FIT;
-		report->calibrated += p == CALIBRATE;
-		report->checked += p == CHECK;
+		memset(held + i, last, end - i);
+		report->fitted += !last;
+		report->checked += last;
 	}
 	if (place >= LEAST) {
-		find_range(sample, part, n, s);
-		s->sums = find_sums(sample, part, n, score);
-		calibrate(sample, part, n, s, score);
-		check(sample, part, n, s, report);
+		find_range(sample, held, n, s);
+		calibrate(sample, held, n, s, score);
+		check(sample, held, n, s, report);
 	}
-	free(part);
+	free(held);
 	free(score);
 	return place >= LEAST ? SURROGATE_OK : SURROGATE_FEW;
 }

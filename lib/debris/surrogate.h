@@ -1,10 +1,8 @@
 /* surrogate.h - intervals that hold for volumes estimated from some columns
  *
- * A volume of footprint.h is off by cells left out, of which it states the standard
- * error, and by the direct sums below the others; it states how the volume changes with
- * the stress.  The sums are off in proportion to the root mean square pressure, since
- * errors of loads far apart are independent.  How far they are, and the quantiles of the
- * errors over both together, come from surfaces of the full model.
+ * A volume of footprint.h is off by cells left out and by the direct sums below the
+ * others, and it states the standard error of both.  The quantiles of the errors over
+ * both together come from surfaces of the full model.
  * Intervals are conformal: the stated shares of particles and surfaces not used in the
  * fit lie within them for any distribution of the errors, provided that scenes are drawn
  * like those of the fit.  There is no estimate where a property of the contact is outside
@@ -40,12 +38,10 @@ extern const char *const surrogate_property_names[SURROGATE_PROPERTIES];
 
 struct surrogate_contact {
 	double property[SURROGATE_PROPERTIES];
-	double pressure; /* root mean square, of all cells, over the yield stress */
 };
 
 struct surrogate {
 	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
-	double sums; /* standard deviation of the direct sums, over that pressure */
 	/* Ascending: |ln(true / estimated volume)| / deviation, of the particles and
 	 * surfaces held back for it. */
 	int particles, totals;
@@ -60,12 +56,12 @@ struct surrogate_sample {
 	struct surrogate_contact contact; /* of the surface */
 };
 
-/* Of the surfaces that neither the fit nor its intervals have seen. */
+/* Of the surfaces held back. */
 struct surrogate_report {
-	long fitted, calibrated, checked; /* surfaces */
-	long within;      /* of the checked, whose total the 90 % interval holds */
-	double rms, most; /* of ln of true over guessed totals */
-	double width;     /* mean half width of ln of those intervals */
+	long fitted, checked; /* surfaces */
+	long within;          /* of the checked, whose total the 90 % interval holds */
+	double rms, most;     /* of ln of true over guessed totals */
+	double width;         /* mean half width of ln of those intervals */
 };
 
 struct surrogate_guess {
@@ -78,8 +74,8 @@ enum surrogate_status {
 	SURROGATE_MEMORY
 };
 
-/* Of five surfaces that follow each other two are fitted to, two make the intervals, and
- * one is checked. */
+/* Of five surfaces that follow each other four make ranges and intervals, and one is
+ * checked. */
 enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
 	struct surrogate *s, struct surrogate_report *report);
 
@@ -87,8 +83,8 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 double surrogate_highest_level(const struct surrogate *s);
 
 /* Hardness 0: none. */
-struct surrogate_contact surrogate_contact(const struct stress_par *par,
-	const double *pressure, double yield, double hardness);
+struct surrogate_contact surrogate_contact(
+	const struct stress_par *par, const double *pressure, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
  * (the logarithm as far up as down).  0 where the contact lies outside the range of the

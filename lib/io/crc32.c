@@ -1,18 +1,21 @@
 #include "io/crc32.h"
 #include "io/bytes.h"
 #include <pthread.h>
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <wmmintrin.h>
+#endif
 
 /* Bytes that one step takes: 16 take two thirds of the time of 8. */
 enum { SLICES = 16 };
 
-/* Bytes of each of two parts that are taken side by side.  Joining them costs as much as
- * some thousand bytes. */
-enum { HALF = 1 << 15 };
+/* Bytes that are folded at once, in lanes of so many. */
+enum { FOLD = 64, LANE = 16 };
 
 static const uint32_t polynomial = 0xedb88320u; /* bit 31: the power 0 */
 
 /* table[0][b]: remainder of byte b; table[k][b]: of b followed by k zero bytes. */
 static uint32_t table[SLICES][256];
+static uint64_t far[2], near[2]; /* what folds a lane into that FOLD, or LANE, on */
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static uint32_t times_x(uint32_t a)
@@ -20,8 +23,27 @@ static uint32_t times_x(uint32_t a)
 	return a & 1 ? a >> 1 ^ polynomial : a >> 1;
 }
 
+static uint32_t power_of_x(int n)
+{
+	uint32_t p = 1u << 31;
+
+	while (n-- > 0)
+		p = times_x(p);
+	return p;
+}
+
+/* For both words of a lane, so many bytes on; a product of reflected polynomials is one
+ * bit short. */
+static void make_fold(uint64_t *fold, int bytes)
+{
+	fold[0] = (uint64_t)power_of_x(8 * bytes + 32) << 1;
+	fold[1] = (uint64_t)power_of_x(8 * bytes - 32) << 1;
+}
+
 static void make_table(void)
 {
+	make_fold(far, FOLD);
+	make_fold(near, LANE);
 	for (uint32_t b = 0; b < 256; b++) {
 		uint32_t r = b;
 
@@ -75,26 +97,72 @@ static inline uint32_t step(uint32_t crc, const unsigned char *b)
 	       shift_word(bytes_u32_little(b + 12), 0);
 }
 
-/* Two halves at once: each step waits for the one before it. */
-static uint32_t add_halves(uint32_t crc, const unsigned char *b, size_t half)
-{
-	uint32_t first = ~crc, second = ~0u;
+#if defined(__x86_64__) && defined(__GNUC__)
+#define WITH_PRODUCTS __attribute__((target("pclmul")))
 
-	for (size_t i = 0; i < half; i += SLICES) {
-		first = step(first, b + i);
-		second = step(second, b + half + i);
-	}
-	return crc32_join(~first, ~second, half);
+static int has_products(void)
+{
+	return __builtin_cpu_supports("pclmul");
 }
+
+WITH_PRODUCTS static inline __m128i load_lane(const void *bytes)
+{
+	return _mm_loadu_si128(bytes);
+}
+
+WITH_PRODUCTS static inline __m128i fold_into(__m128i lane, __m128i fold, __m128i next)
+{
+	__m128i low = _mm_clmulepi64_si128(lane, fold, 0x00),
+		high = _mm_clmulepi64_si128(lane, fold, 0x11);
+
+	return _mm_xor_si128(_mm_xor_si128(low, high), next);
+}
+
+/* The remainder after a multiple of FOLD bytes, by products of polynomials over GF(2):
+ * V. Gopal et al., Fast CRC computation for generic polynomials using PCLMULQDQ, Intel,
+ * 2009.  A sixth of the time of steps. */
+WITH_PRODUCTS static uint32_t fold_bytes(uint32_t crc, const unsigned char *b, size_t n)
+{
+	__m128i lane[FOLD / LANE], by_far = load_lane(far), by_near = load_lane(near);
+	unsigned char rest[LANE];
+
+	for (int i = 0; i < FOLD / LANE; i++)
+		lane[i] = load_lane(b + i * LANE);
+	lane[0] = _mm_xor_si128(lane[0], _mm_cvtsi32_si128((int)crc));
+	for (size_t at = FOLD; at < n; at += FOLD)
+		for (int i = 0; i < FOLD / LANE; i++)
+			lane[i] = fold_into(
+				lane[i], by_far, load_lane(b + at + (size_t)i * LANE));
+	for (int i = 1; i < FOLD / LANE; i++)
+		lane[i] = fold_into(lane[i - 1], by_near, lane[i]);
+	_mm_storeu_si128((__m128i *)rest, lane[FOLD / LANE - 1]);
+	return step(0, rest);
+}
+#else
+static int has_products(void)
+{
+	return 0;
+}
+
+static uint32_t fold_bytes(uint32_t crc, const unsigned char *b, size_t n)
+{
+	(void)b;
+	(void)n;
+	return crc;
+}
+#endif
 
 uint32_t crc32_add(uint32_t crc, const void *bytes, size_t n)
 {
 	const unsigned char *b = bytes;
 
 	pthread_once(&once, make_table);
-	for (; n >= 2 * HALF; n -= 2 * HALF, b += 2 * HALF)
-		crc = add_halves(crc, b, HALF);
 	crc = ~crc;
+	if (n >= FOLD && has_products()) {
+		crc = fold_bytes(crc, b, n - n % FOLD);
+		b += n - n % FOLD;
+		n %= FOLD;
+	}
 	for (; n >= SLICES; n -= SLICES, b += SLICES)
 		crc = step(crc, b);
 	for (; n > 0; n--)

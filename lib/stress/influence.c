@@ -121,8 +121,8 @@ static struct influence element(
 	 * pressure, from 1.5 on by 1e-6. */
 	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy && z < side;
 
-	/* Three points leave about 0.06 / r^6 of the stress. */
-	if (r < 4) {
+	/* Three points leave about 0.06 / r^6 of the stress, 1e-4 at three cells. */
+	if (r < (crowded == CROWD ? 4 : 3)) {
 		mean_of_patches(p, x, y, z, touches ? crowded : 0, &f);
 		return f;
 	}

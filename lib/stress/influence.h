@@ -32,7 +32,7 @@ struct influence influence_point(
 /* An element, to 1e-6 of the load. */
 struct influence influence_element(
 	const struct influence_par *par, double x, double y, double z);
-/* The same in half the time on the cell and its neighbours, where it is to 2e-4. */
+/* The same in half the time: to 2e-4 on the cell and its neighbours, beyond to 1e-4. */
 struct influence influence_rough_element(
 	const struct influence_par *par, double x, double y, double z);
 /* The same two, weighted with 1 - w over the element; w(r) decreases smoothly from 1 to 0

@@ -204,6 +204,16 @@ static int wrapped(const struct lattice_axis *a, int i)
 	return a->wrap ? ((i % n) + n) % n : i;
 }
 
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
+static ALWAYS_INLINE void add_four(lanes4 *sum, double weight, const double *from)
+{
+	lanes4 x;
+
+	memcpy(&x, from, sizeof x);
+	*sum += weight * x;
+}
+
 /* Point i, or i and i + 1, of eight rows together. */
 static inline lanes sum_rows(
 	const double *const f[ORDER], const double *w, int i, const int n)
@@ -215,8 +225,8 @@ static inline lanes sum_rows(
 }
 
 /* The points of a row of cells: those of eight rows together. */
-static void combine_rows(const struct lattice *l, const double *field, int y, int from,
-	int to, double *row)
+LANES_CLONES static void combine_rows(const struct lattice *l, const double *field, int y,
+	int from, int to, double *row)
 {
 	const struct line *lx = &l->x, *ly = &l->y;
 	size_t points = (size_t)lx->axis.points;
@@ -233,6 +243,20 @@ static void combine_rows(const struct lattice *l, const double *field, int y, in
 				row[i - from] += w[j] * f[j][at];
 		}
 		return;
+	}
+	for (; from + 4 <= to; from += 4, row += 4) {
+		lanes4 sum;
+
+		memcpy(&sum, f[0] + from, sizeof sum);
+		sum *= w[0];
+		add_four(&sum, w[1], f[1] + from);
+		add_four(&sum, w[2], f[2] + from);
+		add_four(&sum, w[3], f[3] + from);
+		add_four(&sum, w[4], f[4] + from);
+		add_four(&sum, w[5], f[5] + from);
+		add_four(&sum, w[6], f[6] + from);
+		add_four(&sum, w[7], f[7] + from);
+		memcpy(row, &sum, sizeof sum);
 	}
 	for (; from + 1 < to; from += 2, row += 2)
 		lanes_store(row, sum_rows(f, w, from, 2), 2);

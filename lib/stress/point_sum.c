@@ -32,6 +32,10 @@ static const double FAR = 2.5;
  * 1, 1.25, 1.5 and 2.
  */
 static const double TILE_FAR = 1, DEEP_FAR = 2;
+/* From a single point, of careful sums.  Of 3400 small particles whose volumes are off by
+ * 2 thousandths (nine in ten) those by careful sums are by .6, .3 and .2 thousandths with
+ * 3, 4 and 6. */
+static const double CAREFUL_FAR = 6;
 /* Cells: farther elements act as points, which are off by more and cost more.  Of 160
  * rough surfaces what the sums have in common is off by .43 and .37 thousandths of the
  * mean pressure (nine in ten) with 6 and 8, in 2 % less time. */
@@ -123,12 +127,13 @@ struct point {
 	const struct tile *tile;
 	int ix, iy; /* -1: none */
 	float x, y;
-	float u, v;                      /* from the tile's, along and across the shear */
-	struct loads *points;            /* near it, from there */
-	int count;                       /* of them */
-	float nearest;                   /* the distance squared */
-	int flat_points;                 /* depths to which all act in proportion */
-	struct element element[OFFSETS]; /* nearest */
+	float u, v;           /* from the tile's, along and across the shear */
+	struct loads *points; /* near it, from there */
+	int count;            /* of them */
+	float nearest;        /* the distance squared */
+	int flat_points;      /* depths to which all act in proportion */
+	/* Nearest, and one of no load where their number is odd. */
+	struct element element[OFFSETS + 1];
 	int elements;
 	struct flat flat[SHALLOW]; /* all that acts in proportion to the depth */
 };
@@ -151,6 +156,8 @@ struct point_sum {
 	struct squares *squares; /* of all sizes */
 	struct tile *tile; /* one for each column of tiles: the last that was used */
 	int tiles;
+	int careful;         /* sums */
+	struct tile alone;   /* of one point, for these */
 	struct loads *loads; /* of all tiles */
 	struct block *block; /* of all tiles */
 	struct far *far;     /* of the tile of which they are listed */
@@ -168,7 +175,7 @@ static int halves(int n)
 
 static double depth_of(int k)
 {
-	return ldexp(k % 2 ? SHALLOWEST * M_SQRT2 : SHALLOWEST, k / 2);
+	return (k % 2 ? SHALLOWEST * M_SQRT2 : SHALLOWEST) * (double)(1LL << k / 2);
 }
 
 /* Two depths share what is summed from squares, and how. */
@@ -179,30 +186,44 @@ static int level_of(int k)
 
 /* Squares of a size but the smallest along an axis that may not be far from a tile: those
  * that it lies on, and those on either side whose nearest edge is not. */
-static size_t most_near(double width)
+static size_t most_near(double width, double apart)
 {
-	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(DEEP_FAR / width);
+	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(apart / width);
+}
+
+/* Fours of squares of one size that may be listed for a tile. */
+static size_t most_fours(const struct point_sum *s, double apart)
+{
+	return most_near(s->dx, apart) * most_near(s->dy, apart);
+}
+
+/* Eights of loads that may be far from a tile. */
+static size_t most_eights(const struct point_sum *s, size_t fours)
+{
+	return (4 * fours * (size_t)s->sizes + EIGHT - 1) / EIGHT;
 }
 
 /* Memory for the lists of tiles, which hold parts of squares that are not far. */
 static int new_tiles(struct point_sum *s)
 {
 	size_t tiles = (size_t)(s->par.nx + TILE_SIDE - 1) / TILE_SIDE;
-	size_t fours = most_near(s->dx) * most_near(s->dy);
-	size_t far = 4 * fours * (size_t)s->sizes, eights = (far + EIGHT - 1) / EIGHT;
+	size_t fours = most_fours(s, DEEP_FAR), most = most_fours(s, CAREFUL_FAR);
+	size_t eights = most_eights(s, fours);
 
 	s->tiles = (int)tiles;
 	s->tile = calloc(tiles, sizeof *s->tile);
-	s->block = malloc(4 * fours * tiles * sizeof *s->block);
-	s->point.points = malloc(fours * BLOCK * BLOCK * sizeof *s->loads);
-	s->loads = malloc(eights * tiles * sizeof *s->loads);
-	s->far = malloc(far * sizeof *s->far);
+	s->block = malloc(4 * (fours * tiles + most) * sizeof *s->block);
+	s->point.points = malloc(most * BLOCK * BLOCK * sizeof *s->loads);
+	s->loads = malloc((eights * tiles + most_eights(s, most)) * sizeof *s->loads);
+	s->far = malloc(EIGHT * most_eights(s, most) * sizeof *s->far);
 	if (!s->tile || !s->block || !s->loads || !s->far || !s->point.points)
 		return 0;
 	for (size_t i = 0; i < tiles; i++) {
 		s->tile[i].block = s->block + 4 * fours * i;
 		s->tile[i].loads = s->loads + eights * i;
 	}
+	s->alone.block = s->block + 4 * fours * tiles;
+	s->alone.loads = s->loads + eights * tiles;
 	return 1;
 }
 
@@ -540,7 +561,8 @@ static void list_near(
 /* A smallest square, or its cells one by one. */
 static void list_block(const struct point_sum *s, struct point *at, const struct block *b)
 {
-	const float far = (float)FAR * BLOCK, near = (float)NEAR;
+	const float far = (float)(s->careful ? CAREFUL_FAR : FAR) * BLOCK,
+		    near = (float)NEAR;
 	float u = at->x - b->x, v = at->y - b->y;
 
 	if (u * u + v * v >= far * far) {
@@ -590,7 +612,7 @@ static void list_squares(struct point_sum *s, struct tile *t, int l, int x, int 
 	four away_x = t->x - q->x, away_y = t->y - q->y;
 	four u = beyond(away_x, t->half_x), v = beyond(away_y, t->half_y);
 	four square = u * u + v * v;
-	four_bits flat = flat_depths(square);
+	four_bits flat = s->careful ? (four_bits){ 0 } : flat_depths(square);
 
 	for (int i = 0; i < 4; i++) {
 		int ix = 2 * x + i % 2, iy = 2 * y + i / 2;
@@ -625,22 +647,37 @@ static void sort_far(const struct point_sum *s, struct tile *t)
 		put_load(s, t->loads, place[f->flat]++, f->load, f->x, f->y);
 }
 
+/* Side: of the tile, in cells. */
+static void make_tile(
+	struct point_sum *s, struct tile *t, int column, int row, float side, float apart)
+{
+	t->row = row;
+	t->apart = apart;
+	t->half_x = 0.5f * side * s->dx;
+	t->half_y = 0.5f * side * s->dy;
+	t->x = centre(column, side * s->dx);
+	t->y = centre(row, side * s->dy);
+	t->near = s->count = 0;
+	list_squares(s, t, s->sizes - 1, 0, 0);
+	sort_far(s, t);
+}
+
 static const struct tile *tile_of(struct point_sum *s, int ix, int iy, float apart)
 {
 	int column = ix / TILE_SIDE, row = iy / TILE_SIDE;
 	struct tile *t = &s->tile[column];
 
-	if (t->row != row || t->apart != apart) {
-		t->row = row;
-		t->apart = apart;
-		t->half_x = 0.5f * TILE_SIDE * s->dx;
-		t->half_y = 0.5f * TILE_SIDE * s->dy;
-		t->x = centre(column, TILE_SIDE * s->dx);
-		t->y = centre(row, TILE_SIDE * s->dy);
-		t->near = s->count = 0;
-		list_squares(s, t, s->sizes - 1, 0, 0);
-		sort_far(s, t);
-	}
+	if (t->row != row || t->apart != apart)
+		make_tile(s, t, column, row, TILE_SIDE, apart);
+	return t;
+}
+
+/* From the centre of the cell itself. */
+static const struct tile *tile_alone(struct point_sum *s, int ix, int iy)
+{
+	struct tile *t = &s->alone;
+
+	make_tile(s, t, ix, iy, 1, (float)CAREFUL_FAR);
 	return t;
 }
 
@@ -682,16 +719,18 @@ static void find_point(struct point_sum *s, int ix, int iy, int deep)
 	at->iy = iy;
 	at->x = centre(ix, s->dx);
 	at->y = centre(iy, s->dy);
-	at->tile = tile_of(s, ix, iy, (float)(deep ? DEEP_FAR : TILE_FAR));
+	at->tile = s->careful ? tile_alone(s, ix, iy)
+			      : tile_of(s, ix, iy, (float)(deep ? DEEP_FAR : TILE_FAR));
 	at->elements = at->count = 0;
 	at->nearest = INFINITY;
 	for (int i = 0; i < at->tile->near; i++)
 		list_block(s, at, &at->tile->block[i]);
+	at->element[at->elements] = (struct element){ 0, 0 };
 	x = at->x - at->tile->x;
 	y = at->y - at->tile->y;
 	at->u = s->par.axis ? y : x;
 	at->v = s->par.axis ? x : y;
-	at->flat_points = flat_depths((four){ at->nearest })[0];
+	at->flat_points = s->careful ? 0 : flat_depths((four){ at->nearest })[0];
 	if (!deep)
 		find_flat(s, at);
 }
@@ -704,7 +743,7 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 	const struct point *at = &s->point;
 	const struct tile *tile = at->tile;
 	struct sums t = { .xx = { 0 } };
-	eight e = { 0 };
+	eight e = { 0 }, other = { 0 };
 	float z = (float)depth_of(k);
 	int level = level_of(k);
 
@@ -720,8 +759,14 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 		t.xy += flat->xy + z * flat->rise.xy;
 		t.xz += z * flat->rise.xz;
 		t.yz += z * flat->rise.yz;
-		for (int i = 0; i < at->elements; i++)
-			e += at->element[i].load * effect[at->element[i].offset].number;
+		/* The processor adds to the two side by side. */
+		for (int i = 0; i < at->elements; i += 2) {
+			const struct element *a = &at->element[i];
+
+			e += a[0].load * effect[a[0].offset].number;
+			other += a[1].load * effect[a[1].offset].number;
+		}
+		e += other;
 	}
 	memcpy(number, &e, sizeof e);
 	number[DEV_X] += sum_eight(s->par.axis ? &t.yy : &t.xx);
@@ -729,6 +774,12 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 	number[DEV_XY] += sum_eight(&t.xy);
 	number[DEV_XZ] += sum_eight(s->par.axis ? &t.yz : &t.xz);
 	number[DEV_YZ] += sum_eight(s->par.axis ? &t.xz : &t.yz);
+}
+
+void point_sum_take_care(struct point_sum *s, int careful)
+{
+	s->careful = careful;
+	s->point.ix = -1;
 }
 
 double point_sum_at(struct point_sum *s, int ix, int iy, int k)

@@ -26,5 +26,7 @@ int point_sum_above(const struct point_sum *s, double z);
 /* Below the centre of a cell, at the depth k >= 0.  What depths have in common is found
  * once for calls that follow each other. */
 double point_sum_at(struct point_sum *s, int ix, int iy, int k);
+/* From now on, or no longer: sums with a tenth of the error, for tests of the others. */
+void point_sum_take_care(struct point_sum *s, int careful);
 
 #endif

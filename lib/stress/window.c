@@ -160,7 +160,8 @@ static void find_few(const struct tiling *t, const struct extent *e, struct few 
 }
 
 /* Loads on the rows of the plane where any are. */
-static void put_loads(const struct tiling *t, const struct extent *e, double *plane)
+LANES_CLONES static void put_loads(
+	const struct tiling *t, const struct extent *e, double *plane)
 {
 	const struct window *w = t->w;
 
@@ -168,26 +169,40 @@ static void put_loads(const struct tiling *t, const struct extent *e, double *pl
 		const double *from = w->load + (size_t)y * w->load_stride + e->begin;
 		double *row = plane + (size_t)(y - e->low) * t->stride,
 		       *to = row + (e->begin - e->left);
-		int count = e->stop - e->begin;
+		int count = e->stop - e->begin, x = 0;
 
 		memset(row, 0, (size_t)(e->begin - e->left) * sizeof *row);
-		for (int x = 0; x < count; x++)
+		for (; x + 4 <= count; x += 4) {
+			lanes4 load;
+
+			memcpy(&load, from + x, sizeof load);
+			load *= w->scale;
+			memcpy(to + x, &load, sizeof load);
+		}
+		for (; x < count; x++)
 			to[x] = w->scale * from[x];
 		memset(to + count, 0,
 			(t->x.points - (size_t)(e->stop - e->left)) * sizeof *to);
 	}
 }
 
-/* The product of complex numbers. */
-static void multiply(const double complex *a, const double complex *b, double complex *to,
-	size_t count)
+/* The product of complex numbers, an even number of them. */
+LANES_CLONES static void multiply(const double complex *a, const double complex *b,
+	double complex *to, size_t count)
 {
-	const double *u = (const double *)a, *v = (const double *)b;
-	double *w = (double *)to;
+	const lanes4 sign = { -1, 1, -1, 1 };
 
-	for (size_t i = 0; i < 2 * count; i += 2)
-		lanes_store(w + i,
-			lanes_complex(lanes_load(u + i, 2), lanes_load(v + i, 2)), 2);
+	for (size_t i = 0; i < count; i += 2) {
+		lanes4 u, v, turned, real, imaginary;
+
+		memcpy(&u, a + i, sizeof u);
+		memcpy(&v, b + i, sizeof v);
+		turned = (lanes4){ u[1], u[0], u[3], u[2] };
+		real = (lanes4){ v[0], v[0], v[2], v[2] };
+		imaginary = (lanes4){ v[1], v[1], v[3], v[3] };
+		u = u * real + turned * (imaginary * sign);
+		memcpy(to + i, &u, sizeof u);
+	}
 }
 
 /* The next wanted nodes of a part, counted from its first; next: the first span that may

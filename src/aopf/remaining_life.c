@@ -12,7 +12,6 @@
 #include "life/trend/passage.h"
 #include "life/trend/predict.h"
 #include "life/trend/rescaled.h"
-#include "life/trend/runin.h"
 #include "num/checksum.h"
 #include <float.h>
 #include <math.h>
@@ -24,14 +23,12 @@ enum { GREY = PREDICT_GREY };
 static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
 	"saturating", "grey", "literal", NULL };
-static const char *const skips[] = { "auto", NULL };
 
 struct outlook_options outlook_options = { .threshold = NAN };
 
-static double after = -INFINITY, horizon;
+static double after = -INFINITY, horizon, skip;
 static int direction = AUTO, model;
 static long persist = 3;
-static struct opt_choice skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
 static const char *fleet_file, *events_file;
 static int weights;
@@ -50,8 +47,8 @@ struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 		0 },
 	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
 		"value of y without degradation, the zero of the grey model", NULL, 0 },
-	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
-		"run-in that the long-term model does not use, from the first row", skips,
+	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, DBL_MAX, "T",
+		"run-in that the long-term model does not use, from the first row", NULL,
 		0 },
 	OPT_END };
 
@@ -126,7 +123,6 @@ struct outlook {
 	struct predict *predict; /* NULL before the first value */
 	struct outlook_state {
 		int started, direction;
-		struct runin runin;
 		struct rescaled scale;
 		double factor, rescaled; /* of the values from about this time on; 0: 1 */
 		double first, last, clock; /* times */
@@ -135,7 +131,7 @@ struct outlook {
 		long rows;
 		long beyond; /* successive values past the threshold */
 		int failed, alarm;
-		unsigned long lives, left_out, skipped, run_ins, events, standing;
+		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
 
@@ -169,9 +165,10 @@ void outlook_check(int bare)
 						 : "fleet",
 			models[model]);
 	covariates_check();
-	if (bare && (model >= GREY || skip.word == 0))
-		die(EXIT_USAGE, "--lives-only excludes %s, which requires the filter",
-			model >= GREY ? "--model grey and literal" : "--skip auto");
+	if (bare && model >= GREY)
+		die(EXIT_USAGE,
+			"--lives-only excludes --model grey and literal, which require the "
+			"filter");
 	if (bare && opt_any_given(filtering_rows))
 		die(EXIT_USAGE, "--lives-only excludes --%s, an option of the filter",
 			opt_any_given(filtering_rows));
@@ -399,12 +396,7 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	}
 	now->clock = in->clock;
 	heed_events(o, in);
-	if (skip.word == 0 && !isnan(in->y) &&
-		runin_add(&now->runin, in->y, filtered->noise)) {
-		predict_restart(o->predict);
-		now->run_ins++;
-	}
-	if (skip.word == 0 || in->clock - now->first >= skip.value / timeunit())
+	if (in->clock - now->first >= skip / timeunit())
 		predict_add(o->predict, in->clock, in->y,
 			filtered ? filtered->state + outlook_options.zero : NAN,
 			in->load);
@@ -508,7 +500,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 					   : direction == UP;
 
 		now->started = 1;
-		now->direction = now->runin.direction = up ? 1 : -1;
+		now->direction = up ? 1 : -1;
 		start(o);
 	}
 	if (now->started)
@@ -516,10 +508,9 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	now->rows++;
 	now->last = in->t;
 	if (!isnan(in->y))
-		now->beyond =
-			now->runin.direction * (in->y - outlook_options.threshold) >= 0
-				? now->beyond + 1
-				: 0;
+		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
+				      ? now->beyond + 1
+				      : 0;
 	now->failed |= now->started && now->beyond >= persist;
 	if (now->factor == 0 && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
@@ -613,7 +604,6 @@ void outlook_count(struct outlook *o)
 	stats_add("lives_left_out", (double)o->now.left_out);
 	stats_add("rows_skipped", (double)o->now.skipped);
 	stats_add("rows_standing", (double)o->now.standing);
-	stats_add("run_ins", (double)o->now.run_ins);
 	stats_add("events", (double)o->now.events);
 	if (o->predict && predict_bank(o->predict)) {
 		struct bank_counts c = bank_counts(predict_bank(o->predict));

@@ -30,8 +30,8 @@ void surrogate_write(
 {
 	struct table_out *t = table_create(NULL, cmd, "1 1 1", "kind name value");
 
-	table_comment(t, "surfaces", "%ld fitted, %ld for the intervals, %ld checked",
-		report->fitted, report->calibrated, report->checked);
+	table_comment(t, "surfaces", "%ld fitted, %ld checked", report->fitted,
+		report->checked);
 	table_comment(t, "checked",
 		"total volumes differ by %.3g rms, %.3g at most (of the logarithm); "
 		"intervals of 90 %% hold %ld of %ld and are +-%.3g wide",
@@ -41,7 +41,6 @@ void surrogate_write(
 		put(t, "least", surrogate_property_names[k], s->least[k]);
 		put(t, "most", surrogate_property_names[k], s->most[k]);
 	}
-	put(t, "deviation", "sums", s->sums);
 	put_numbered(t, "particle", s->particle, s->particles);
 	put_numbered(t, "total", s->total, s->totals);
 	table_done(t);
@@ -55,8 +54,6 @@ static double *place_of(
 		if (!strcmp(name, surrogate_property_names[k]) &&
 			(!strcmp(kind, "least") || !strcmp(kind, "most")))
 			return &(kind[0] == 'l' ? s->least : s->most)[k];
-	if (!strcmp(kind, "deviation") && !strcmp(name, "sums"))
-		return &s->sums;
 	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
 		return s->particle + s->particles++;
 	if (!strcmp(kind, "total") && s->totals < SURROGATE_SCORES)
@@ -93,7 +90,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(a);
 		rows++;
 	}
-	if (rows != 2L * SURROGATE_PROPERTIES + 1 + s->particles + s->totals)
+	if (rows != 2L * SURROGATE_PROPERTIES + s->particles + s->totals)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);

@@ -1,7 +1,7 @@
 /* surrogate_table.h - a surrogate of the debris model as a table: debrisfit, debrisgen
  *
  * Columns kind, name and value: least and most of a property of the contacts of the fit;
- * deviation of the direct sums; the scores of particles and totals, ascending.
+ * the scores of particles and totals, ascending.
  */
 #ifndef SURROGATE_TABLE_H
 #define SURROGATE_TABLE_H

@@ -106,7 +106,7 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 		NUM_OK)
 		die(EXIT_RUN, "out of memory");
 	contact = surrogate_contact(
-		&par.stress, pressure, par.yield, record_get_number(r, "hardness"));
+		&par.stress, pressure, record_get_number(r, "hardness"));
 	add_samples(in, surface, r->nx, &step, list, n, &contact);
 	footprints_free(f);
 	debris_free(d);

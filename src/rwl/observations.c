@@ -98,6 +98,34 @@ static double add_debris(struct observations *s, enum verdict verdict, double di
 	return s->debris += many * sphere * diameter * diameter * diameter;
 }
 
+/* Rows from which on second differences tell the noise of volumes. */
+enum { KNOWN = 8 };
+
+/* The measured volume of a pair that is nearly new may be below 0, but by no more than
+ * five standard deviations of its noise: one with the wrong sign would never fail. */
+static void check_lowest(const struct observations *s)
+{
+	double error = state_options.error * s->scale,
+	       noise = error > 0 ? error : s->noise.scale;
+
+	if (s->lowest < -5 * noise)
+		die(EXIT_RUN,
+			"%s: line %ld: a volume of %g m3 is farther below 0 than noise with a "
+			"standard deviation of %.3g m3 explains",
+			table_name(s->table), s->lowest_line, s->lowest, noise);
+}
+
+static void heed_volume(struct observations *s, double value, double gap)
+{
+	noise_add(&s->noise, value, gap);
+	if (value < s->lowest) {
+		s->lowest = value;
+		s->lowest_line = table_line(s->table);
+	}
+	if (s->noise.rows >= KNOWN)
+		check_lowest(s);
+}
+
 int state_next(struct observations *s)
 {
 	struct table_in *t = s->table;
@@ -115,6 +143,7 @@ int state_next(struct observations *s)
 				table_name(t), s->passed);
 		if (s->quantity == PAIR_DEBRIS)
 			verdict_report();
+		check_lowest(s);
 		return 0;
 	}
 	time = table_number(t, s->time_column) * s->time_scale;
@@ -130,9 +159,11 @@ int state_next(struct observations *s)
 			table_line(t), time);
 	if (value < 0 && s->filtered)
 		value = 0; /* the filtered state of an unworn pair may be below 0 */
-	if (value < 0 || isinf(value))
+	if (isinf(value) || (value < 0 && s->quantity != PAIR_VOLUME))
 		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
 			table_line(t), value, quantities[s->quantity]);
+	if (s->quantity == PAIR_VOLUME && !isnan(value))
+		heed_volume(s, value, time - s->t);
 	if (value > most[s->quantity] && !s->beyond++)
 		warn("%s: line %ld: a %s of %g %s: is another unit meant? --state-unit names it",
 			table_name(t), table_line(t), quantities[s->quantity], value,

@@ -15,6 +15,7 @@
 
 #include "cli/opt.h"
 #include "io/tables.h"
+#include "life/grey/noise.h"
 #include "life/pair/pair.h"
 #include "life/trend/rescaled.h"
 
@@ -40,6 +41,9 @@ struct observations {
 	long passed;          /* particles without a diameter */
 	long beyond;          /* values that suggest another unit */
 	struct rescaled seen; /* values, to find out whether their unit changes */
+	struct noise noise;   /* of volumes */
+	double lowest;        /* volume, no more than 0, */
+	long lowest_line;     /* and where it is */
 	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row, SI; gap and value NAN if missing */
 	double gap_error;     /* standard error of the gap */

@@ -268,8 +268,8 @@ static int next_row(struct source *s, struct passage *p)
 	p->velocity = table_number(t, s->velocity_column);
 	if (!(p->velocity >= s->slowest && p->velocity <= 1e4 * s->slowest))
 		die(EXIT_RUN,
-			"%s: line %ld: velocity %g m/s, want 1 %% of the oil's to 100 times "
-			"that, %g to %g m/s",
+			"%s: line %ld: velocity %g m/s, want 0.01 to 100 times that of the "
+			"oil, %g to %g m/s",
 			table_name(t), table_line(t), p->velocity, s->slowest,
 			1e4 * s->slowest);
 	p->time[1] = p->time[0] + s->stream.spacing / p->velocity;

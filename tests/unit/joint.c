@@ -307,7 +307,7 @@ static void test_pairs(struct joint *j, const struct joint_scene *plain, int ton
 			add_noise(y[c], 5000 + k, c);
 		if (joint_fit(j, &s, y[0], y[1], N, found, &m, &r) != JOINT_OK || m != 1)
 			continue;
-		joint_pair_odds(j, &s, found, 0, scatter, odds);
+		joint_pair_odds(j, 0, scatter, odds);
 		/* One other per 0.2 durations, of any share. */
 		for (int w = 0; w < JOINT_SHARES; w++)
 			p += odds[w] / JOINT_SHARES / 0.2;

@@ -6,7 +6,6 @@
 #include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
-#include "life/trend/runin.h"
 #include "num/select.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -96,25 +95,6 @@ static void test_orders(void)
 	order_free(all);
 	order_free(ranged);
 	draw_free(d);
-}
-
-static void test_runin(void)
-{
-	struct runin rise = { .direction = 1 }, bump = { .direction = -1 };
-	int risen = 0, bumped = 0, last = 0;
-
-	for (int k = 0; k < 400; k++) {
-		double excursion = exp(-pow((k - 40) / 15.0, 2));
-
-		risen += runin_add(&rise, exp(0.01 * k), 0.01);
-		if (runin_add(&bump, -(0.002 * k + excursion), 0.02)) {
-			bumped++;
-			last = k;
-		}
-	}
-	ok(risen == 0, "a series that only rises has no run-in");
-	ok(bumped > 0 && last > 55 && last < 100, "a bump about row 40 ends by row %d",
-		last);
 }
 
 enum { DRAWS = 2000 };
@@ -296,7 +276,8 @@ static void test_few_rows(void)
 	ok(metric_quantile(life, DRAWS, 0.05) < 1,
 		"two rows of steep wear after eleven others may go on to the end");
 	/* creep in three stages whose end, at 14, is one row away */
-	bank_clear(b);
+	bank_free(b);
+	b = bank_new(&par);
 	for (int k = 0; k < 14; k++)
 		bank_add(b, k,
 			0.25 * cbrt(k / 14.0) + 0.25 * k / 14 +
@@ -783,7 +764,6 @@ int main(void)
 	test_noise();
 	test_grey_series();
 	test_orders();
-	test_runin();
 	test_straight_wear();
 	test_readings_rounded_down();
 	test_clock();

@@ -8,7 +8,7 @@
 
 enum { ROWS = 256 };
 
-static struct arrival row[ROWS];
+static struct evidence row[ROWS];
 
 /* Groups of two rows, apart durations from one another; amplitudes spread by a factor of
  * exp(spread), and odds. */
@@ -18,7 +18,7 @@ static void make_rows(double apart, double spread, double odds)
 		double z[2];
 
 		philox_normal2(1, 0, RNG_PARTICLE, (uint64_t)i, z);
-		row[i] = (struct arrival){ .group = 1 + i / 2,
+		row[i] = (struct evidence){ .group = 1 + i / 2,
 			.time = 10 * (i / 2) + apart * (i % 2),
 			.amplitude = 20 * exp(spread * z[0]) };
 		for (int k = 0; k < JOINT_SHARES; k++)

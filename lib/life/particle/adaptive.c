@@ -49,7 +49,7 @@ struct adaptive {
 	struct noise noise;
 	long rows;
 	double time;
-	double observed, observed_time, observed_gap; /* the last observation */
+	double observed, observed_time; /* the last observation */
 	double mean_gap;
 	int filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
@@ -281,13 +281,6 @@ static double observation_noise(const struct adaptive *a)
 	return s > least ? s : least;
 }
 
-/* Process noise below which a filter of that order follows its own states and not the
- * data: half of sigma_v up to order 40, rising to sigma_v at 60. */
-static double process_floor(int order, double noise)
-{
-	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
-}
-
 /* The second largest of the last squared errors of the grey model of the observations, so
  * that a single outlier has no influence. */
 static double missed_lately(const struct adaptive *a)
@@ -301,36 +294,30 @@ static double missed_lately(const struct adaptive *a)
 	return second;
 }
 
-/* Recent error of that model beyond three standard deviations of the noise. */
-static double model_error(const struct adaptive *a, double noise)
-{
-	return sqrt(fmax(0, missed_lately(a) - 9 * noise * noise));
-}
-
 /* An observation is classified as an outlier if its distance from the forecast, and from
  * the observation before it, is twenty times the recent error of noise and model.  Not
- * after a longer gap and not twice in a row: then the series itself has moved. */
-static int is_outlier(
-	struct adaptive *a, double y, double gap, double forecast, double noise)
+ * twice in a row: then the series itself has moved. */
+static int is_outlier(struct adaptive *a, double y, double forecast, double noise)
 {
-	double usual = fmax(noise * noise, missed_lately(a));
-	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
+	double usual = fmax(noise * noise, missed_lately(a)),
+	       miss = fmin(fabs(y - forecast), fabs(y - a->observed));
 
-	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
+	a->outlier = !a->outlier && a->misses >= SETTLED &&
 		     miss * miss > OUTLYING * OUTLYING * usual;
 	a->outliers += (unsigned long)a->outlier;
 	return a->outlier;
 }
 
-static double process_noise(const struct adaptive *a, int order, double noise, double gap)
+/* Per step no less than half of sigma_v, below which the filter follows its own states
+ * and not the data, and than the recent error of the model beyond the noise. */
+static double process_noise(const struct adaptive *a, double noise, double gap)
 {
 	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1,
-	       s = a->par.process / a->scale;
+	       model = missed_lately(a) - noise * noise, s = a->par.process / a->scale;
 
 	if (isnan(a->par.process))
-		s = fmax(a->process,
-			fmax(process_floor(order, noise), model_error(a, noise)));
-	return s * sqrt(fmin(16, fmax(1, steps)));
+		s = fmax(a->process, fmax(0.5 * noise, sqrt(fmax(0, model))));
+	return s * sqrt(steps);
 }
 
 /* Estimates the process noise from the excess of the mean squared innovation over what
@@ -370,7 +357,7 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	struct adaptive_row *row)
 {
 	double noise = observation_noise(a), variance = filter_now(a->filter).variance;
-	double e = y - row->prediction, own;
+	double e = y - row->prediction;
 	int lost;
 
 	filter_update(a->filter, y, noise);
@@ -380,10 +367,7 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 		lost = 1;
 	} else {
 		learn_process(a, e, variance, process, noise);
-		/* The spread of the particles is limited: diverged particles would
-		 * otherwise pass for uncertain ones. */
-		own = noise * noise + process * process;
-		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own)) ||
+		lost = monitor(a, e, noise * noise + variance) ||
 		       fabs(y - row->state) > OUTLYING * noise;
 		a->restarts += (unsigned long)lost;
 	}
@@ -433,7 +417,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
-	process = process_noise(a, order, noise, gap);
+	process = process_noise(a, noise, gap);
 	if (order > 0)
 		forecast_particles(
 			a, a->filter, &a->gap[a->filled - 1], order, gap, noise);
@@ -444,14 +428,13 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	row->prediction = row->state;
 	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
 	y /= a->scale;
-	if (isnan(y) || is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
+	if (isnan(y) || is_outlier(a, y, row->grey, noise)) {
 		push_past(a, row->prediction, gap);
 		return;
 	}
 	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
 	noise_add(&a->noise, y, t - a->observed_time);
-	a->observed_gap = t - a->observed_time;
 	a->observed_time = t;
 	a->observed = y;
 	observe(a, y, gap, process, row);
@@ -503,7 +486,7 @@ enum num_status adaptive_lives(
 {
 	int order = order_in_use(a);
 	double limit = threshold / a->scale, noise = observation_noise(a),
-	       gap = a->mean_gap, process = process_noise(a, order, noise, gap);
+	       gap = a->mean_gap, process = process_noise(a, noise, gap);
 	size_t n = a->par.filter.particles, left;
 	struct filter *f;
 

@@ -4,7 +4,7 @@
  * each particle carries its own past, a grey model of the chosen order is fitted to the
  * past of each and predicts its next state, and the observation weights them.  Departures
  * from the publication that keep the filter from diverging: histories are genealogies,
- * the process noise has a floor that grows with the order and is no less than the recent
+ * the process noise is no less than half of the observation noise and than the recent
  * errors of the grey model, and an innovation monitor restarts the particles
  * from the observations when their mean squared standardised innovation over twenty rows
  * exceeds four.  A single observation whose error is twenty times the usual one is

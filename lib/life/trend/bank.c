@@ -89,13 +89,6 @@ void bank_free(struct bank *b)
 	free(b);
 }
 
-void bank_clear(struct bank *b)
-{
-	b->rows = 0;
-	b->n_held = 0;
-	b->loaded = 0;
-}
-
 int bank_ready(const struct bank *b)
 {
 	return b->rows >= BANK_START;

@@ -118,7 +118,6 @@ enum { BANK_START = 4 }; /* observations before there is a prediction */
 /* par is copied; its shapes remain the property of the caller.  NULL: no memory. */
 struct bank *bank_new(const struct bank_par *par);
 void bank_free(struct bank *b);
-void bank_clear(struct bank *b); /* forgets all rows */
 
 /* The covariates x[n_loads] since the row before, up to t; call before bank_add(). */
 void bank_load(struct bank *b, double t, const double *x);

@@ -70,13 +70,6 @@ void predict_add(struct predict *p, double t, double y, double state, const doub
 		bank_add(p->bank, t, y);
 }
 
-void predict_restart(struct predict *p)
-{
-	p->now.grey = (struct grey_series){ 0 };
-	if (p->bank)
-		bank_clear(p->bank);
-}
-
 int predict_draws(const struct predict *p)
 {
 	return p->par.model == PREDICT_LITERAL ? p->par.draws

@@ -45,8 +45,6 @@ void predict_pass(struct predict *p, struct state *s);
 /* Adds a row: the observation, NAN if it is missing, the filtered state, which only
  * the grey model uses, and the covariates [n_loads] since the row before. */
 void predict_add(struct predict *p, double t, double y, double state, const double *load);
-/* Drops all rows: they were running-in. */
-void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);
 /* Fills life[draws] with the remaining times at the last row, ascending, INFINITY beyond
  * the horizon; NUM_DOMAIN below four rows.  The threshold counts as reached once the

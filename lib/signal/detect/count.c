@@ -3,7 +3,6 @@
 #include "num/parabola.h"
 #include "num/sigmas.h"
 #include "signal/noise/robust.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,13 +24,8 @@ double count_level(const double *x, size_t n, size_t stride, double *work)
 
 struct count *count_new(double level)
 {
-	struct count *c;
+	struct count *c = calloc(1, sizeof *c);
 
-	if (!(level > 0)) {
-		errno = EDOM;
-		return NULL;
-	}
-	c = calloc(1, sizeof *c);
 	if (c)
 		c->level = level;
 	return c;

@@ -18,8 +18,7 @@ struct peak {
 double count_level(const double *x, size_t n, size_t stride, double *work);
 
 struct count;
-/* level > 0.  NULL with errno EDOM or ENOMEM. */
-struct count *count_new(double level);
+struct count *count_new(double level); /* level > 0; NULL: no memory */
 void count_free(struct count *count);
 
 /* Takes one more sample; 1 if a peak is now certain. */

@@ -88,12 +88,12 @@ static size_t highest(const double *x, size_t n)
 
 /* At the same time y[0] is y[1] shift samples before.  The first shift samples of y[0]
  * and the last of y[1] have none to compare with, and must be noise. */
-static void find_shock(const struct foreign_stretch *s, size_t shift, double energy,
-	double *wave, struct foreign *out)
+static void find_shock(
+	const struct foreign_stretch *s, size_t shift, double energy, struct foreign *out)
 {
 	size_t n = s->n;
 	struct axis a = { .count = 0 };
-	double alone = 0, rest = 0, dof;
+	double alone = 0, rest = 0, top = 0, dof;
 
 	if (shift >= n)
 		return;
@@ -108,14 +108,18 @@ static void find_shock(const struct foreign_stretch *s, size_t shift, double ene
 	dof = (1 - s->lost) * (a.count + alone);
 	if (!is_noise(rest, dof, energy) || !is_common(&a))
 		return;
-	for (size_t i = shift; i < n; i++)
-		wave[i - shift] =
-			a.along[0] * s->y[0][i] + a.along[1] * s->y[1][i - shift];
 	out->verdict = SEPARATE_SHOCK;
 	out->chi2 = rest / dof;
-	out->t[1] = (double)highest(wave, n - shift);
+	for (size_t i = 0; i < n - shift; i++) {
+		double y = a.along[0] * s->y[0][i + shift] + a.along[1] * s->y[1][i];
+
+		if (i > 0 && fabs(y) <= fabs(top))
+			continue;
+		top = y;
+		out->t[1] = (double)i;
+	}
 	out->t[0] = out->t[1] + (double)shift;
-	out->amplitude = a.along[0] * wave[(size_t)out->t[1]];
+	out->amplitude = a.along[0] * top;
 }
 
 /* All of it at one sensor. */
@@ -329,16 +333,10 @@ static double energy_of(const struct foreign_stretch *s)
 	return sum - (1 - s->lost) * count;
 }
 
-enum num_status foreign_at_once(const struct foreign_stretch *s, struct foreign *out)
+void foreign_at_once(const struct foreign_stretch *s, struct foreign *out)
 {
-	double *wave = malloc((s->n ? s->n : 1) * sizeof *wave);
-
 	*out = none;
-	if (!wave)
-		return NUM_MEMORY;
-	find_shock(s, 0, energy_of(s), wave, out);
-	free(wave);
-	return NUM_OK;
+	find_shock(s, 0, energy_of(s), out);
 }
 
 enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
@@ -353,7 +351,7 @@ enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
 	if (wave)
 		status = find_impulse(s, &rest, &count, &impulse);
 	if (status == NUM_OK && s->shift > 0)
-		find_shock(s, s->shift, energy, wave, out);
+		find_shock(s, s->shift, energy, out);
 	if (status == NUM_OK && out->verdict == SEPARATE_MISFIT)
 		find_transient(s, energy, out);
 	/* A weak particle beside it would be no more than noise either. */

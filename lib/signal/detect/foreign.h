@@ -40,6 +40,6 @@ enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
 	double delta_max, struct foreign *out);
 
 /* The same for two channels of one time: SEPARATE_SHOCK or SEPARATE_MISFIT. */
-enum num_status foreign_at_once(const struct foreign_stretch *s, struct foreign *out);
+void foreign_at_once(const struct foreign_stretch *s, struct foreign *out);
 
 #endif

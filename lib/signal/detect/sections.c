@@ -2,7 +2,6 @@
 #include "signal/detect/sections.h"
 #include "num/dot.h"
 #include "num/room.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,14 +46,9 @@ static void set_margins(
 struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, double slack)
 {
-	struct sections *s;
+	struct sections *s = calloc(1, sizeof *s);
 	double energy;
 
-	if (!(duration >= SECTIONS_SHORTEST)) {
-		errno = EDOM;
-		return NULL;
-	}
-	s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;
 	s->first = shape_support(shape, 0, duration, &s->len);

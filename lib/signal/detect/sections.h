@@ -22,9 +22,8 @@ enum { SECTIONS_SHORTEST = 4 };
 
 struct sections;
 
-/* threshold: standard deviations of the matched filter; slack: samples added at either
- * side of the pulses.  NULL with errno EDOM (duration below SECTIONS_SHORTEST) or
- * ENOMEM. */
+/* duration: at least SECTIONS_SHORTEST; threshold: standard deviations of the matched
+ * filter; slack: samples added at either side of the pulses.  NULL: no memory. */
 struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, double slack);
 void sections_free(struct sections *s);

@@ -7,14 +7,6 @@
  *
  * with w the symmetric window of order + 1 points.  They are symmetric, so the filter
  * delays every frequency by order / 2 samples.
- *
- *	struct fir_band band = { 200, 0.007, 0.013, FIR_HAMMING, 0, 1 };
- *	double h[201];
- *	fir_design(&band, h);
- *	struct fir *fir = fir_new(h, 201, channels, 0);
- *	while ((n = read_frames(x, fir_block(fir))) > 0)
- *		fir_run(fir, x, n);
- *	fir_free(fir);
  */
 #ifndef SIGNAL_FIR_H
 #define SIGNAL_FIR_H

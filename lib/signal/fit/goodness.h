@@ -17,11 +17,10 @@ struct goodness {
 	enum separate_verdict pulse[JOINT_PULSES_MAX]; /* of each */
 };
 
-/* Judges the first done of the m pulses of the last fit, which are those that arrive
- * before boundary; only the samples before it count.  n: length of the fitted record;
- * model_holds: 0 if not even clear pulses of this record fit. */
-void goodness_of_fit(const struct joint *joint, const struct joint_scene *scene, size_t n,
-	const struct joint_pulse *pulses, int m, int done, double boundary,
-	int model_holds, const struct joint_result *r, struct goodness *out);
+/* Judges the first done of the pulses of the last fit, which are those that arrive before
+ * boundary; only the samples before it count.  model_holds: 0 if not even clear pulses of
+ * this record fit. */
+void goodness_of_fit(const struct joint *joint, int done, double boundary,
+	int model_holds, struct goodness *out);
 
 #endif

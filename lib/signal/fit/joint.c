@@ -1,10 +1,12 @@
 /* joint.c - see joint.h */
 #include "signal/fit/joint_state.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* Matched filter of the residual on every stride-th sample, per channel. */
-static size_t filter_residual(struct joint *j, const struct joint_scene *s, size_t stride)
+static size_t filter_residual(struct joint *j, size_t stride)
 {
+	const struct joint_scene *s = &j->scene;
 	size_t len, points = (j->n + stride - 1) / stride;
 	long first = shape_support(s->shape, 0, s->duration, &len);
 
@@ -17,9 +19,9 @@ static size_t filter_residual(struct joint *j, const struct joint_scene *s, size
 }
 
 /* The pulse that would reduce chi-square most, except near the positions tried before. */
-static struct candidate search(struct joint *j, const struct joint_scene *s,
-	const struct candidate *tried, int ntried)
+static struct candidate search(struct joint *j, const struct candidate *tried, int ntried)
 {
+	const struct joint_scene *s = &j->scene;
 	size_t stride = (size_t)shape_stride(s->duration);
 	size_t points;
 	double z = 0, least = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
@@ -28,10 +30,10 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 	struct candidate best = { 0 };
 
 	joint_project(j);
-	points = filter_residual(j, s, stride);
-	j->searches++;
-	from = (long)ceil(fmax(arrival_limit(s, 0, j->n), 0) / (double)stride);
-	to = (long)fmin(arrival_limit(s, 1, j->n) / (double)stride, (double)points - 1);
+	points = filter_residual(j, stride);
+	j->result.searches++;
+	from = (long)ceil(fmax(arrival_limit(j, 0), 0) / (double)stride);
+	to = (long)fmin(arrival_limit(j, 1) / (double)stride, (double)points - 1);
 	for (long k = from; k <= to; k++) {
 		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
 			l++) {
@@ -55,15 +57,16 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 		}
 	}
 	best.z2 = z * z;
-	j->negative |= !s->signs && -least > z && least * least > s->threshold_near;
+	j->result.negative |=
+		!s->signs && -least > z && least * least > s->threshold_near;
 	best.a = z * norm;
 	return best;
 }
 
-/* 1 if there are more than the m pulses, and no room for them. */
-static int are_more(struct joint *j, const struct joint_scene *s, int m)
+/* 1 if there are more pulses, and no room for them. */
+static int are_more(struct joint *j)
 {
-	return m == s->max_pulses && search(j, s, NULL, 0).z2 > s->threshold;
+	return j->m == j->scene.max_pulses && search(j, NULL, 0).z2 > j->scene.threshold;
 }
 
 static int by_time(const void *x, const void *y)
@@ -73,24 +76,22 @@ static int by_time(const void *x, const void *y)
 	return p->t < q->t ? -1 : p->t > q->t;
 }
 
-static void finish(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int m, double chi2, int full,
+static void finish(struct joint *j, int full, struct joint_pulse *pulses,
 	struct joint_result *result)
 {
-	double visible;
+	double visible =
+		(double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
+	double dof = (1 - j->scene.lost) * visible - j->taken;
 
-	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
-	joint_fill_covariance(j, s, pulses, m);
+	qsort(j->pulse, (size_t)j->m, sizeof *j->pulse, by_time);
+	joint_fill_covariance(j);
 	joint_project(j);
-	result->chi2 = chi2;
-	visible = (double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
-	result->dof = (long)((1 - s->lost) * visible - j->taken + 0.5) - PAR * m;
-	if (result->dof < 1)
-		result->dof = 1;
-	result->full = full;
-	result->negative = j->negative;
-	result->steps = j->steps;
-	result->searches = j->searches;
+	j->result.dof = (long)(dof + 0.5) - PAR * j->m;
+	if (j->result.dof < 1)
+		j->result.dof = 1;
+	j->result.full = full;
+	memcpy(pulses, j->pulse, (size_t)j->m * sizeof *pulses);
+	*result = j->result;
 }
 
 enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
@@ -101,33 +102,33 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
 	int failed = 0, full;
-	double chi2;
 
 	if (status != JOINT_OK)
 		return status;
-	chi2 = joint_fit_all(j, s, pulses, *m);
+	joint_fit_all(j);
 	do {
-		while (failed < 3 + *m / 8 && *m < s->max_pulses) {
-			struct candidate c = search(j, s, tried, failed);
+		while (failed < 3 + j->m / 8 && j->m < s->max_pulses) {
+			struct candidate c = search(j, tried, failed);
 
 			if (c.z2 < 0.3 * s->threshold_near)
 				break;
-			if (joint_try_pulse(j, s, pulses, m, &c, &chi2))
+			if (joint_try_pulse(j, &c))
 				failed = 0;
 			else
 				tried[failed++] = c;
 		}
-		chi2 = joint_fit_all(j, s, pulses, *m);
-	} while (joint_split_pulses(j, s, pulses, m, &chi2));
-	full = s->give_up && are_more(j, s, *m);
+		joint_fit_all(j);
+	} while (joint_split_pulses(j));
+	full = s->give_up && are_more(j);
 	if (!full) {
-		joint_swap_pulses(j, s, pulses, *m, &chi2);
-		joint_merge_pulses(j, s, pulses, m, &chi2);
-		joint_prune(j, s, pulses, m, &chi2);
-		chi2 = joint_fit_all(j, s, pulses, *m);
-		full = are_more(j, s, *m);
+		joint_swap_pulses(j);
+		joint_merge_pulses(j);
+		joint_prune(j);
+		joint_fit_all(j);
+		full = are_more(j);
 	}
-	finish(j, s, pulses, *m, chi2, full, result);
+	*m = j->m;
+	finish(j, full, pulses, result);
 	return JOINT_OK;
 }
 
@@ -137,7 +138,9 @@ enum joint_status joint_refine(struct joint *j, const struct joint_scene *s,
 {
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, m);
 
-	if (status == JOINT_OK)
-		finish(j, s, pulses, m, joint_fit_all(j, s, pulses, m), 0, result);
-	return status;
+	if (status != JOINT_OK)
+		return status;
+	joint_fit_all(j);
+	finish(j, 0, pulses, result);
+	return JOINT_OK;
 }

@@ -17,12 +17,6 @@
  * delta.  To the same chi-square gsl_multifit_nlinear, which needs the whole Jacobian,
  * takes 4 to 60 times as long, and gsl_multilarge_nlinear with a normal matrix made like
  * ours 1.1 to 1.7 times (tests/bench/solvers.c).
- *
- *	struct joint *j = joint_new();
- *	int m = 0;
- *	if (joint_fit(j, &scene, y1, y2, n, pulses, &m, &result) == JOINT_OK)
- *		...
- *	joint_free(j);
  */
 #ifndef SIGNAL_JOINT_H
 #define SIGNAL_JOINT_H
@@ -136,32 +130,18 @@ static inline double joint_share(int k)
 {
 	return 0.25 + (k + 0.5) * JOINT_SHARE_STEP;
 }
-void joint_pair_odds(struct joint *joint, const struct joint_scene *scene,
-	const struct joint_pulse *pulses, int i, double scatter,
-	double odds[JOINT_SHARES]);
+void joint_pair_odds(
+	struct joint *joint, int i, double scatter, double odds[JOINT_SHARES]);
 
 /* Samples of pulses computed by all fits so far. */
 double joint_work(const struct joint *joint);
 
-/* Of the only pulse p of the last fit: by which share its amplitude at sensor 2 exceeds
+/* Of the only pulse of the last fit: by which share its amplitude at sensor 2 exceeds
  * gain times that at sensor 1, and the standard error of this. */
-void joint_gain_error(const struct joint *joint, const struct joint_pulse *p,
-	double *share, double *se);
-
-/* The vectors q, of as many samples as the last fit had, of tones and baseline: the
- * inverse of the covariance of a channel is 1 - sum q q^T.  *taken: degrees of freedom
- * that they take of both channels, without the baseline's. */
-const double *joint_basis(
-	const struct joint *joint, int channel, int *count, double *taken);
+void joint_gain_error(const struct joint *joint, double *share, double *se);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);
-
-/* Samples of the last fit in [from, to) of a channel that are not hidden. */
-size_t joint_visible(const struct joint *joint, int channel, size_t from, size_t to);
-
-/* Sets those that are, of n samples of the channel from sample first on, to zero in x. */
-void joint_hide(const struct joint *joint, int channel, long first, size_t n, double *x);
 
 /* Adds sign times one pulse to y1[0..n) and y2[0..n) (either may be NULL). */
 void joint_add(const struct joint_scene *scene, const struct joint_pulse *pulse,

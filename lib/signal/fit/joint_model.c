@@ -68,8 +68,11 @@ static enum joint_status reserve_samples(struct joint *j, size_t n)
 	return JOINT_OK;
 }
 
-static enum joint_status reserve_columns(struct joint *j, size_t support)
+enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s)
 {
+	double longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
+	double length = 2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0));
+	size_t support = (size_t)(length + 0.4 * s->duration) + 4;
 	double *at;
 
 	if (support <= j->support)
@@ -170,8 +173,9 @@ static double take_term(struct joint *j, int c, int b, double variance)
 /* Adds what is left of tones that were removed from channel c: errors of their
  * coefficients at knots, with linear interpolation between.  Knots are farther apart if
  * there is no room for all; there are as many on either channel. */
-static void add_known_tones(struct joint *j, const struct joint_scene *s, int c, int most)
+static void add_known_tones(struct joint *j, int c, int most)
 {
+	const struct joint_scene *s = &j->scene;
 	double n = (double)j->n, hop = s->tone_hop, first;
 
 	while (hop > 0 && (2 + ceil(n / hop)) * 2 * s->tones > most)
@@ -190,14 +194,15 @@ static void add_known_tones(struct joint *j, const struct joint_scene *s, int c,
 
 /* The basis of channel c.  A baseline may be anything slower than low: waves of up to
  * that frequency that are periodic in 2 n, so that its ends need not meet. */
-static void make_channel_basis(struct joint *j, const struct joint_scene *s, int c)
+static void make_channel_basis(struct joint *j, int c)
 {
+	const struct joint_scene *s = &j->scene;
 	int slow = (int)fmin(ceil(2 * (double)j->n * s->low), JOINT_BASELINE_MAX);
 	int free_tones = isinf(s->tone_variance) ? s->tones : 0, known;
 
 	j->basis = 0;
 	if (!free_tones && s->tones > 0)
-		add_known_tones(j, s, c, BASIS_MAX - 2 * slow - 1);
+		add_known_tones(j, c, BASIS_MAX - 2 * slow - 1);
 	known = j->basis;
 	for (int k = 1; k <= slow; k++) {
 		double omega = M_PI * k / (double)j->n;
@@ -219,9 +224,10 @@ static void make_channel_basis(struct joint *j, const struct joint_scene *s, int
 }
 
 /* Basis of offset, baseline and tones over n samples. */
-static enum joint_status make_basis(struct joint *j, const struct joint_scene *s)
+static enum joint_status make_basis(struct joint *j)
 {
-	int differ = j->hidden[0] || j->hidden[1] ||
+	const struct joint_scene *s = &j->scene;
+	int differ = s->hidden[0] || s->hidden[1] ||
 		     (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
 
 	if (differ && !j->basis_memory[1])
@@ -232,7 +238,7 @@ static enum joint_status make_basis(struct joint *j, const struct joint_scene *s
 	j->taken = 0;
 	for (int c = 0; c < 2; c++) {
 		j->q[c] = j->basis_memory[differ ? c : 0];
-		make_channel_basis(j, s, c);
+		make_channel_basis(j, c);
 	}
 	return JOINT_OK;
 }
@@ -271,7 +277,7 @@ void joint_project(struct joint *j)
 
 void joint_hide(const struct joint *j, int channel, long first, size_t n, double *x)
 {
-	const unsigned char *hidden = j->hidden[channel];
+	const unsigned char *hidden = j->scene.hidden[channel];
 
 	for (size_t i = 0; hidden && i < n; i++)
 		if (hidden[first + (long)i])
@@ -282,8 +288,8 @@ size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)
 {
 	size_t count = to - from;
 
-	for (size_t i = from; j->hidden[channel] && i < to; i++)
-		count -= j->hidden[channel][i] != 0;
+	for (size_t i = from; j->scene.hidden[channel] && i < to; i++)
+		count -= j->scene.hidden[channel][i] != 0;
 	return count;
 }
 
@@ -303,9 +309,10 @@ static long pulse_window(const struct joint_scene *s, const struct joint_pulse *
 	return first;
 }
 
-void joint_subtract(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, double sign)
+void joint_subtract(struct joint *j, const struct joint_pulse *p, double sign)
 {
+	const struct joint_scene *s = &j->scene;
+
 	for (int c = 0; c < 2; c++) {
 		size_t len;
 		long first = pulse_window(s, p, c, j->n, &len);
@@ -317,6 +324,12 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
 				j->scratch, len);
 	}
+}
+
+void joint_subtract_all(struct joint *j, double sign)
+{
+	for (int i = 0; i < j->m; i++)
+		joint_subtract(j, &j->pulse[i], sign);
 }
 
 /* From derivatives by the arrival and by T, which grows by stretch with the arrival,
@@ -344,9 +357,10 @@ LANES_CLONES static void turn_columns(
 	}
 }
 
-void joint_make_columns(
-	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p)
+void joint_make_columns(struct joint *j, int i)
 {
+	const struct joint_scene *s = &j->scene;
+	const struct joint_pulse *p = &j->pulse[i];
 	double T = joint_duration(s, p->delta), stretch = s->duration / s->transit;
 
 	for (int c = 0; c < 2; c++) {
@@ -394,40 +408,27 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	int m)
 {
 	enum joint_status status;
-	double longest;
-	size_t support;
 
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
-	longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
-	support =
-		(size_t)(2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0)) +
-			 0.4 * s->duration) +
-		4;
-	status = reserve_samples(j, n);
+	status = joint_reserve_columns(j, s);
 	if (status == JOINT_OK)
-		status = reserve_columns(j, support);
+		status = reserve_samples(j, n);
 	if (status != JOINT_OK)
 		return status;
 	j->n = n;
-	j->steps = j->searches = j->negative = 0;
+	j->result = (struct joint_result){ 0 };
 	memcpy(j->e[0], y1, n * sizeof(double));
 	memcpy(j->e[1], y2, n * sizeof(double));
-	for (int c = 0; c < 2; c++) {
-		j->hidden[c] = s->hidden[c];
+	j->scene = *s;
+	j->m = m;
+	memcpy(j->pulse, pulses, (size_t)m * sizeof *pulses);
+	for (int c = 0; c < 2; c++)
 		joint_hide(j, c, 0, n, j->e[c]);
-	}
-	status = make_basis(j, s);
-	for (int i = 0; i < m && status == JOINT_OK; i++)
-		joint_subtract(j, s, &pulses[i], 1);
+	status = make_basis(j);
+	if (status == JOINT_OK)
+		joint_subtract_all(j, 1);
 	return status;
-}
-
-const double *joint_basis(const struct joint *j, int channel, int *count, double *taken)
-{
-	*count = j->basis;
-	*taken = j->taken;
-	return j->q[channel];
 }
 
 double joint_work(const struct joint *j)

@@ -17,13 +17,14 @@ static double knot(int k)
 	return k ? first * exp2(0.5 * (k - 1)) : 0;
 }
 
-/* What two equal pulses a gap apart put on channel c beside one at their middle, in x of
- * j->support samples; the first of them, and how many in *n.  The one is the third of its
- * columns. */
-static long make_excess(const struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, const struct column *one, int c, double gap,
-	double *x, size_t *n)
+/* What two equal pulses a gap apart put on channel c beside one, pulse i, at their
+ * middle, in x of j->support samples; the first of them, and how many in *n. */
+static long make_excess(
+	const struct joint *j, int i, int c, double gap, double *x, size_t *n)
 {
+	const struct joint_scene *s = &j->scene;
+	const struct joint_pulse *p = &j->pulse[i];
+	const struct column *one = &j->col[i][c];
 	double T = joint_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
 	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
 	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
@@ -44,8 +45,7 @@ static long make_excess(const struct joint *j, const struct joint_scene *s,
 	return from;
 }
 
-void joint_pair_start(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulses, int i, const int *set, int m)
+void joint_pair_start(struct joint *j, int i, const int *set, int m)
 {
 	struct pair_table *t = &j->pair;
 	double seen[PAIR_KNOTS][NPAR], along_basis[PAIR_KNOTS][BASIS_MAX];
@@ -61,8 +61,8 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 		first[a] = 0;
 		n[a] = 0;
 		if (k > 0)
-			first[a] = make_excess(j, s, &pulses[i], &j->col[i][c], c,
-				knot(k) * s->duration, x, &n[a]);
+			first[a] = make_excess(
+				j, i, c, knot(k) * j->scene.duration, x, &n[a]);
 		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
 		for (int b = 0; b < j->basis; b++)
 			along_basis[a][b] = joint_along_basis(j, c, b, first[a], x, n[a]);
@@ -142,9 +142,7 @@ double joint_pair_best(const struct joint *j, double *gap)
 	return best;
 }
 
-void joint_pair_odds(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulses, int i, double scatter,
-	double odds[JOINT_SHARES])
+void joint_pair_odds(struct joint *j, int i, double scatter, double odds[JOINT_SHARES])
 {
 	/* Steps of the difference of two delays, in standard deviations. */
 	static const double step = 0.6;
@@ -153,7 +151,7 @@ void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 		odds[w] = 0;
 	if (i >= j->inverted)
 		return;
-	joint_pair_start(j, s, pulses, i, j->all, j->inverted);
+	joint_pair_start(j, i, j->all, j->inverted);
 	for (int w = 0; w < JOINT_SHARES; w++) {
 		double share = joint_share(w), narrow = 2 * sqrt(share * (1 - share));
 
@@ -163,7 +161,7 @@ void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 
 			width = k ? width : knot(1);
 			for (int d = -STEPS; d <= STEPS; d++) {
-				double apart = d * step * scatter / s->duration;
+				double apart = d * step * scatter / j->scene.duration;
 				double density = step * exp(-0.5 * pow(d * step, 2)) /
 						 sqrt(2 * M_PI);
 				double ratio = pair_ratio(j, narrow * fabs(gap),

@@ -1,5 +1,5 @@
-/* joint_state.h - data shared by the parts of the joint fit, for lib/signal/fit/joint*.c
- * only
+/* joint_state.h - data shared by the parts of the joint fit, for
+ * lib/signal/fit only
  */
 #ifndef SIGNAL_JOINT_STATE_H
 #define SIGNAL_JOINT_STATE_H
@@ -31,8 +31,14 @@ struct pair_table {
 };
 
 struct joint {
-	size_t capacity; /* samples */
-	size_t support;  /* samples one pulse may touch */
+	struct joint_scene scene; /* of this fit or the last one, with its pulses */
+	struct joint_pulse pulse[JOINT_PULSES_MAX];
+	int m;
+	struct joint_result result;
+	struct joint_pulse before[JOINT_PULSES_MAX]; /* pulses before a move, */
+	int m_before;                                /* which may be undone */
+	size_t capacity;                             /* samples */
+	size_t support;                              /* samples one pulse may touch */
 	size_t n;
 	double *e[2]; /* record minus pulses, with tones */
 	double *r[2]; /* e without tones and offset */
@@ -43,10 +49,9 @@ struct joint {
 	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
 	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
 	double *basis_memory[2];
-	const unsigned char *hidden[2]; /* of the scene */
-	double *memory;                 /* columns of all pulses */
-	double *scratch;                /* three of support */
-	double *excess;                 /* PAIR_KNOTS of support */
+	double *memory;  /* columns of all pulses */
+	double *scratch; /* three of support */
+	double *excess;  /* PAIR_KNOTS of support */
 	struct pair_table pair;
 	double *filter[2]; /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
@@ -59,8 +64,6 @@ struct joint {
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
-	long steps, searches;
-	int negative; /* as that of joint_result */
 	double work;  /* samples of columns computed, since it is new */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
@@ -75,13 +78,15 @@ static inline double clamp(double x, double lo, double hi)
 	return x < lo ? lo : x > hi ? hi : x;
 }
 
-/* Earliest (side 0) and latest (1) arrival in n samples. */
-static inline double arrival_limit(const struct joint_scene *s, int side, size_t n)
+/* Earliest (side 0) and latest (1) arrival. */
+static inline double arrival_limit(const struct joint *j, int side)
 {
-	double inside = s->quiet[side] > 0 ? fmin(s->quiet[side], 0.5 * (double)n)
+	const struct joint_scene *s = &j->scene;
+	double n = (double)j->n;
+	double inside = s->quiet[side] > 0 ? fmin(s->quiet[side], 0.5 * n)
 					   : -0.9 * shape_reach(s->shape) * s->duration;
 
-	return side ? (double)n - inside : inside;
+	return side ? n - inside : inside;
 }
 
 /* Inner product of vector b of a channel's basis with x[0 .. n), whose first sample is
@@ -100,67 +105,64 @@ static inline double joint_along_basis(
 
 /* joint_model.c: the record minus pulses, and its parts */
 
-/* Stores the record and its m known pulses. */
+/* Stores the scene, the record and its m known pulses, and subtracts these. */
 enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m);
+/* Room for columns of pulses in the range of delays of this scene. */
+enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);
 /* r = e without its tones, as far as they are not known beforehand. */
 void joint_project(struct joint *j);
 /* e less sign times the pulse. */
-void joint_subtract(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, double sign);
-/* Columns of pulse i as p is. */
-void joint_make_columns(
-	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p);
+void joint_subtract(struct joint *j, const struct joint_pulse *p, double sign);
+void joint_subtract_all(struct joint *j, double sign);
+/* Columns of pulse i. */
+void joint_make_columns(struct joint *j, int i);
+
+/* Samples of the last fit in [from, to) of a channel that are not hidden. */
+size_t joint_visible(const struct joint *joint, int channel, size_t from, size_t to);
+
+/* Sets those that are, of n samples of the channel from sample first on, to zero in x. */
+void joint_hide(const struct joint *joint, int channel, long first, size_t n, double *x);
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 
 /* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
-double joint_fit_set(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, const int *set, int m, int max_steps,
-	double tolerance);
-double joint_fit_all(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
+double joint_fit_set(
+	struct joint *j, const int *set, int m, int max_steps, double tolerance);
+void joint_fit_all(struct joint *j); /* sets chi-square */
 /* Covariances from the inverse of the undamped normal matrix. */
-void joint_fill_covariance(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
+void joint_fill_covariance(struct joint *j);
 
 /* x becomes L^-1 x by the last factor, from row start on (x is zero above). */
 void joint_reduce(const struct joint *j, int np, int start, double *x);
 
 /* Factor of the normal matrix of the pulses in set, with their columns. */
-enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulses, const int *set, int m);
+enum num_status joint_factorise(struct joint *j, const int *set, int m);
 
 /* joint_pair.c */
 
 /* Makes the table of pulse i, one of the m in set, whose factor was made. */
-void joint_pair_start(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulses, int i, const int *set, int m);
+void joint_pair_start(struct joint *j, int i, const int *set, int m);
 /* Largest of it among the gaps of the table, the same on both channels: gaps that differ
  * describe a wrong gain as well.  0: one pulse is most likely. */
 double joint_pair_best(const struct joint *j, double *gap);
 
-/* joint_moves.c: *chi2 is kept up to date */
+/* joint_moves.c: pulses, m and chi-square are kept up to date */
 
 /* Tries one more pulse at c; 0 if chi-square does not fall enough: nothing has changed.
  */
-int joint_try_pulse(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int *m, const struct candidate *c, double *chi2);
+int joint_try_pulse(struct joint *j, const struct candidate *c);
 /* Splits pulses that look like two; returns how many were split. */
-int joint_split_pulses(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int *m, double *chi2);
+int joint_split_pulses(struct joint *j);
 /* Exchanges arrivals of pulses at the second sensor if that reduces chi-square. */
-void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int m, double *chi2);
+void joint_swap_pulses(struct joint *j);
 /* Merges pulses so close that they may be one that was split in vain. */
-void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int *m, double *chi2);
+void joint_merge_pulses(struct joint *j);
 /* Removes insignificant pulses, the least significant first. */
-void joint_prune(struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses,
-	int *m, double *chi2);
+void joint_prune(struct joint *j);
 
 #endif

@@ -160,16 +160,17 @@ static void solve(const struct joint *j, int np, int start, double *x)
 }
 
 /* One step from old along move, limited to meaningful pulses. */
-static struct joint_pulse moved(const struct joint_scene *s,
-	const struct joint_pulse *old, const double *move, size_t n)
+static struct joint_pulse moved(
+	const struct joint *j, const struct joint_pulse *old, const double *move)
 {
+	const struct joint_scene *s = &j->scene;
 	struct joint_pulse p = *old;
 	double step = JOINT_STEP * s->duration;
 	double beyond = JOINT_BEYOND * (s->delta_max - s->delta_min);
 	double t2 = old->t + old->delta + clamp(move[1], -step, step);
 
-	p.t = clamp(old->t + clamp(move[0], -step, step), arrival_limit(s, 0, n),
-		arrival_limit(s, 1, n));
+	p.t = clamp(old->t + clamp(move[0], -step, step), arrival_limit(j, 0),
+		arrival_limit(j, 1));
 	p.delta = clamp(t2 - p.t, s->delta_min - beyond, s->delta_max + beyond);
 	p.a = old->a + move[2];
 	p.a = old->a > 0 ? clamp(p.a, 0.1 * old->a, 10 * old->a)
@@ -227,16 +228,13 @@ static void count_span(struct joint *j, int c, long from, long to, double sign)
 
 /* Moves the pulses in set along j->move, and stores their columns before the step in
  * trial. */
-static void step_forth(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, const int *set, int m, struct before *old)
+static void step_forth(struct joint *j, const int *set, int m, struct before *old)
 {
 	for (int x = 0; x < m; x++) {
-		struct joint_pulse *p = &pulses[set[x]];
-
-		old->pulse[x] = *p;
-		*p = moved(s, &old->pulse[x], j->move + PAR * x, j->n);
+		old->pulse[x] = j->pulse[set[x]];
+		j->pulse[set[x]] = moved(j, &old->pulse[x], j->move + PAR * x);
 		swap_columns(j, set[x]);
-		joint_make_columns(j, s, set[x], p);
+		joint_make_columns(j, set[x]);
 	}
 	find_span(j, set, m, old);
 	old->energy = j->energy;
@@ -251,15 +249,14 @@ static void step_forth(struct joint *j, const struct joint_scene *s,
 
 			add_scaled(
 				j->e[c] + was->first, old->pulse[x].a, was->d[2], was->n);
-			add_scaled(
-				j->e[c] + is->first, -pulses[set[x]].a, is->d[2], is->n);
+			add_scaled(j->e[c] + is->first, -j->pulse[set[x]].a, is->d[2],
+				is->n);
 		}
 		count_span(j, c, old->from[c], old->to[c], 1);
 	}
 }
 
-static void step_back(struct joint *j, struct joint_pulse *pulses, const int *set, int m,
-	const struct before *old)
+static void step_back(struct joint *j, const int *set, int m, const struct before *old)
 {
 	for (int c = 0; c < 2; c++)
 		memcpy(j->e[c] + old->from[c], j->r[c] + old->from[c],
@@ -268,13 +265,12 @@ static void step_back(struct joint *j, struct joint_pulse *pulses, const int *se
 	memcpy(j->qe, old->qe, sizeof j->qe);
 	for (int x = 0; x < m; x++) {
 		swap_columns(j, set[x]);
-		pulses[set[x]] = old->pulse[x];
+		j->pulse[set[x]] = old->pulse[x];
 	}
 }
 
-double joint_fit_set(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, const int *set, int m, int max_steps,
-	double tolerance)
+double joint_fit_set(
+	struct joint *j, const int *set, int m, int max_steps, double tolerance)
 {
 	double lambda = 1e-4, chi2;
 	struct before old;
@@ -283,21 +279,21 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 	joint_measure(j);
 	chi2 = joint_chi_square(j);
 	for (int x = 0; x < m; x++)
-		joint_make_columns(j, s, set[x], &pulses[set[x]]);
+		joint_make_columns(j, set[x]);
 	for (int step = 0; step < max_steps && m > 0; step++) {
 		double after;
 
 		if (!fresh)
 			make_normal(j, set, m);
 		fresh = 1;
-		j->steps++;
+		j->result.steps++;
 		if (factorise(j, PAR * m, lambda) != NUM_OK) {
 			lambda = lambda * 10 + 1e-3;
 			continue;
 		}
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
 		solve(j, PAR * m, 0, j->move);
-		step_forth(j, s, pulses, set, m, &old);
+		step_forth(j, set, m, &old);
 		after = joint_chi_square(j);
 		if (after < chi2) {
 			double gain = chi2 - after;
@@ -309,7 +305,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 				break;
 			continue;
 		}
-		step_back(j, pulses, set, m, &old);
+		step_back(j, set, m, &old);
 		if (after - chi2 < tolerance || lambda > 1e6)
 			break;
 		lambda = lambda * 10;
@@ -317,25 +313,23 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 	return chi2;
 }
 
-double joint_fit_all(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
+void joint_fit_all(struct joint *j)
 {
-	return joint_fit_set(j, s, pulses, j->all, m, 50, 1e-4);
+	j->result.chi2 = joint_fit_set(j, j->all, j->m, 50, 1e-4);
 }
 
-enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulses, const int *set, int m)
+enum num_status joint_factorise(struct joint *j, const int *set, int m)
 {
 	for (int x = 0; x < m; x++)
-		joint_make_columns(j, s, set[x], &pulses[set[x]]);
+		joint_make_columns(j, set[x]);
 	make_normal(j, set, m);
 	return factorise(j, PAR * m, 0);
 }
 
-void joint_fill_covariance(
-	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
+void joint_fill_covariance(struct joint *j)
 {
-	int good = joint_factorise(j, s, pulses, j->all, m) == NUM_OK, np = PAR * m;
+	int m = j->m, np = PAR * m;
+	int good = joint_factorise(j, j->all, m) == NUM_OK;
 	double x[NPAR];
 
 	j->inverted = good ? m : 0;
@@ -347,21 +341,20 @@ void joint_fill_covariance(
 				solve(j, np, PAR * i + u, x);
 			}
 			for (int v = 0; v <= u; v++)
-				pulses[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
+				j->pulse[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
 		}
 }
 
-void joint_gain_error(
-	const struct joint *j, const struct joint_pulse *p, double *share, double *se)
+void joint_gain_error(const struct joint *j, double *share, double *se)
 {
-	double off[2], var = 0;
+	double off[2], var = 0, a = j->pulse[0].a;
 
 	for (int c = 0; c < 2; c++) {
 		const struct column *col = &j->col[0][c];
 		double energy = dot(col->d[2], col->d[2], col->n);
 
-		off[c] = dot(col->d[2], j->r[c] + col->first, col->n) / (p->a * energy);
-		var += 1 / (p->a * p->a * energy);
+		off[c] = dot(col->d[2], j->r[c] + col->first, col->n) / (a * energy);
+		var += 1 / (a * a * energy);
 	}
 	*share = off[1] - off[0];
 	*se = sqrt(var);

@@ -2,7 +2,6 @@
 #include "signal/mixture/masks.h"
 #include "signal/mixture/histogram.h"
 #include "signal/mixture/stft.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,17 +19,12 @@ struct masks {
 	int *cell; /* of each point of the plane, -1 outside the histogram */
 };
 
-static size_t bin_count(const struct masks *m, size_t n)
-{
-	return stft_frames(m->stft, n) * m->bins;
-}
-
 static enum num_status reserve(struct masks *m, size_t n)
 {
-	size_t count = bin_count(m, n);
+	size_t frames = stft_frames(m->stft, n), count = frames * m->bins;
 
 	m->n = n;
-	m->frames = stft_frames(m->stft, n);
+	m->frames = frames;
 	if (count <= m->capacity)
 		return NUM_OK;
 	free(m->y1);
@@ -73,15 +67,8 @@ static enum num_status calibrate(struct masks *m)
 
 struct masks *masks_new(const struct masks_par *par)
 {
-	struct masks *m;
+	struct masks *m = calloc(1, sizeof *m);
 
-	if (!(par->duration >= 4) || !(par->delta_min < par->delta_max) ||
-		!(par->gain_max > 0) || par->sources < 0 ||
-		par->sources > MASKS_SOURCES_MAX || !par->shape) {
-		errno = EDOM;
-		return NULL;
-	}
-	m = calloc(1, sizeof *m);
 	if (!m)
 		return NULL;
 	m->par = *par;

@@ -33,8 +33,8 @@ enum { MASKS_BAND = 2 };
 
 struct masks_par {
 	size_t window, hop;          /* samples */
-	double duration;             /* of a pulse, samples */
-	double delta_min, delta_max; /* range of the histogram, samples */
+	double duration;             /* of a pulse, samples, 4 or more */
+	double delta_min, delta_max; /* range of the histogram, samples, not empty */
 	double gain_max;             /* attenuation from 0 to this */
 	double peak_share; /* peaks lower than this share of the highest are noise */
 	int sources;       /* how many to find; 0: as many as there are peaks */
@@ -47,8 +47,7 @@ struct masks_source {
 };
 
 struct masks;
-/* NULL with errno EDOM (bad sizes) or ENOMEM. */
-struct masks *masks_new(const struct masks_par *par);
+struct masks *masks_new(const struct masks_par *par); /* NULL: no memory */
 void masks_free(struct masks *masks);
 
 /* Finds the *sources sources of y1[0..n), y2[0..n) (aligned), largest weight first. */

@@ -14,12 +14,6 @@
  *	least |a_k exp(-i w delta_k) X1 - X2|^2 / (1 + a_k^2),
  *
  * so that the sources add up to channel 1.  The record is kept: 16 bytes a frame.
- *
- *	struct mixture *m = mixture_new(&par);
- *	while ((n = read(x)) > 0)
- *		mixture_push(m, x, n);
- *	count = mixture_find(m, source);
- *	mixture_separate(m, y);
  */
 #ifndef SIGNAL_MIXTURE_H
 #define SIGNAL_MIXTURE_H
@@ -31,9 +25,8 @@
 enum { MIXTURE_SOURCES = HISTOGRAM_PEAKS };
 
 struct mixture_par {
-	size_t window,
-		hop; /* of the transform, samples: window even, hop to half of it */
-	int sources; /* how many to find; 0: as many as there are peaks */
+	size_t window, hop; /* of the transform, samples: even, and up to half of it */
+	int sources;        /* how many to find; 0: as many as there are peaks */
 	void (*progress)(long done, long windows); /* called as they are transformed; or
 						  NULL */
 };

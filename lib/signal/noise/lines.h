@@ -5,14 +5,6 @@
  * next; so they may change slowly, and pulses much shorter than the window hardly
  * affect them (tones.h also excludes outliers).  A line of constant amplitude is removed
  * to rounding.  The output lags the input by at most two hops.
- *
- *	struct lines *lines = lines_new(2, omega, channels, 10000);
- *	do {
- *		n = read_frames(x, 10000);
- *		y = lines_run(lines, x, n, &clean);
- *		write_frames(y, clean);
- *	} while (n == 10000);
- *	lines_free(lines);
  */
 #ifndef SIGNAL_LINES_H
 #define SIGNAL_LINES_H

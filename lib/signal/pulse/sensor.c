@@ -35,11 +35,13 @@ static double lorentz_at(double xi, double *slope)
 
 static const struct {
 	double reach;
+	/* max |l'/l^3| = max |d(1/l^2)/dx| / 2, times length over (1/l0^2 - 1/lf^2) */
+	double peak_of_path;
 	double (*at)(double xi, double *slope);
 } forms[PULSE_SHAPES] = {
-	[PULSE_SINE] = { 0.5, sine_at },
-	[PULSE_GAUSS] = { 1.5, gauss_at },
-	[PULSE_LORENTZ] = { 25, lorentz_at },
+	[PULSE_SINE] = { 0.5, M_PI / 2, sine_at },
+	[PULSE_GAUSS] = { 1.5, M_PI * 0.60653065971263342, gauss_at }, /* exp(-1/2) */
+	[PULSE_LORENTZ] = { 25, 2 * M_PI * 3 * 1.7320508075688772 / 16, lorentz_at },
 };
 
 double pulse_reach(enum pulse_shape shape)
@@ -164,19 +166,6 @@ double sensor_diameter_error(
 	return d / 3 * sqrt(ra * ra + rt * rt + 2 * correlation * ra * rt);
 }
 
-/* max |l'/l^3| = max |d(1/l^2)/dx| / 2, times length over (1/l0^2 - 1/lf^2). */
-static double peak_of_path(enum pulse_shape shape)
-{
-	switch (shape) {
-	case PULSE_SINE:
-		return M_PI / 2;
-	case PULSE_GAUSS:
-		return M_PI * exp(-0.5);
-	default:
-		return 2 * M_PI * 3 * sqrt(3) / 16;
-	}
-}
-
 double sensor_kappa(const struct sensor_coil *coil, enum pulse_shape shape)
 {
 	double path = 1 / (coil->near_path * coil->near_path) -
@@ -185,7 +174,7 @@ double sensor_kappa(const struct sensor_coil *coil, enum pulse_shape shape)
 
 	/* (3-1) at the peak, over v d^3; volume = pi d^3 / 6 */
 	return 2 * coil->turns * coil->field_turns * coil->current * mu * (M_PI / 6) *
-	       peak_of_path(shape) * path / coil->length;
+	       forms[shape].peak_of_path * path / coil->length;
 }
 
 double pipe_mean_velocity(const struct pipe *pipe)

@@ -17,13 +17,6 @@
  * The spectra of gauss and lorentz peak at 1 / T; the one sine period peaks at 0.825 / T.
  *
  * Times of the pulse functions are in any one unit; everything else is SI.
- *
- *	double k = 1.0 / (12.73 * pow(100e-6, 3));   // 1 V for 100 um at 12.73 m/s
- *	size_t n;
- *	long first = pulse_support(PULSE_SINE, 512.3, 100.0, &n);
- *	pulse_sample(PULSE_SINE, 512.3, 100.0, first, n, p, NULL, NULL);
- *	for (size_t i = 0; i < n; i++)
- *		x[first + i] += sensor_voltage(k, 12.73, 80e-6) * p[i];
  */
 #ifndef SIGNAL_SENSOR_H
 #define SIGNAL_SENSOR_H

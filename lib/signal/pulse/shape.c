@@ -97,21 +97,13 @@ struct shape *shape_from_values(const double *value, int half, double reach)
 {
 	struct shape *shape;
 	double peak = 0;
-	int cells = 2 * half;
+	int cells = 2 * half, sane = half >= 2 && reach > 0 && isfinite(reach);
 
-	if (half < 2 || !(reach > 0) || !isfinite(reach)) {
-		errno = EDOM;
-		return NULL;
+	for (int i = 0; i <= cells && sane; i++) {
+		sane = isfinite(value[i]);
+		peak = fmax(peak, fabs(value[i]));
 	}
-	for (int i = 0; i <= cells; i++) {
-		if (!isfinite(value[i])) {
-			errno = EDOM;
-			return NULL;
-		}
-		if (fabs(value[i]) > peak)
-			peak = fabs(value[i]);
-	}
-	if (peak == 0) {
+	if (!sane || peak == 0) {
 		errno = EDOM;
 		return NULL;
 	}

@@ -63,12 +63,6 @@ static long long cut_section(
 	return start;
 }
 
-/* In samples.  In shorter windows, most pulses would be cut by the ends. */
-static double shortest_window(const struct separate *s)
-{
-	return fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
-}
-
 /* Consecutive unresolved windows after which the rest of the section is reported as
  * unresolved.  Of 10404 particles in 20 records (scenes dense, poisson-50, group-25-dB
  * and group-skew of tests/matrix/scenes.tsv, seeds 11 and 12) 1, 2, 3 and 5 find 4974,
@@ -77,22 +71,22 @@ enum { PATIENCE = 3 };
 
 /* Fits the pulses of a window to both components.  If the residual of the second exceeds
  * the noise, it is an event that the first does not show, or else they are doubted. */
-static enum separate_status fit_quadrature(struct separate *s, long long from, size_t n,
-	int whole, struct account *a, struct foreign *event)
+static enum separate_status fit_quadrature(
+	struct separate *s, struct account *a, struct foreign *event)
 {
-	struct channels y = channels_at(s, from);
+	struct channels y = channels_at(s, a->from);
 	struct goodness *j = &a->goodness;
 	int doubt;
 	enum num_status status;
 
-	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2, n,
+	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2,
 		s->pulse, a->m, j->chi2, s->both, &doubt);
 	if (status == NUM_MEMORY)
 		return SEPARATE_MEMORY;
 	s->with_both = status == NUM_OK;
 	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
 		return SEPARATE_OK;
-	if (whole && separate_find_foreign(s, from, n, 1, event) != NUM_OK)
+	if (a->whole && separate_find_foreign(s, a->from, a->n, 1, event) != NUM_OK)
 		return SEPARATE_MEMORY;
 	/* Without a pulse there is no row that could be marked as a misfit. */
 	j->stretch = a->m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
@@ -101,41 +95,39 @@ static enum separate_status fit_quadrature(struct separate *s, long long from, s
 	return SEPARATE_OK;
 }
 
-/* Explains a window of n samples that is no event of another kind. */
-static enum separate_status explain(struct separate *s, long long from, size_t n, int cut,
-	int whole, struct account *a, struct foreign *event)
+/* Explains a window that is no event of another kind. */
+static enum separate_status explain(
+	struct separate *s, struct account *a, struct foreign *event)
 {
 	enum separate_status status = SEPARATE_OK;
 
 	if (!s->par.sources && (a->r.negative || !separate_is_described(a)))
-		status = separate_try_rivals(s, from, n, cut, a);
+		status = separate_try_rivals(s, a);
 	else if (separate_is_described(a))
 		separate_follow(s, a);
-	return status == SEPARATE_OK && has_quadrature(s)
-		       ? fit_quadrature(s, from, n, whole, a, event)
-		       : status;
+	return status == SEPARATE_OK && has_quadrature(s) ? fit_quadrature(s, a, event)
+							  : status;
 }
 
-/* Ends a section with the row of an event found in the n samples that begin at from. */
-static enum separate_status give_event(struct separate *s, long long from, size_t n,
+/* Ends a section with the row of an event found in the window. */
+static enum separate_status give_event(struct separate *s, const struct account *a,
 	long long to, const struct foreign *event, long long *next)
 {
 	s->carried = s->failures = 0;
 	*next = to;
 	return s->same_shock ? SEPARATE_OK
-			     : separate_give_event(s, from, from + (long long)n, event);
+			     : separate_give_event(
+				       s, a->from, a->from + (long long)a->n, event);
 }
 
 enum separate_status separate_fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
-	struct account a = { .m = s->carried };
+	struct account a = { .cut = cut, .m = s->carried };
 	enum separate_status status;
 	struct foreign event = { .verdict = SEPARATE_MISFIT };
-	int whole = !cut && s->window == SEEK && !s->par.sources;
 	int unresolved, shorter;
 	long before, after;
-	size_t n;
 
 	/* The noise on either side of a section shows that no pulse extends there. */
 	before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
@@ -143,8 +135,10 @@ enum separate_status separate_fit_section(
 						    : before;
 	after = cut ? 0 : sections_aside(s->sections, 1);
 	after = ready(s) - to < after ? (long)(ready(s) - to) : after;
-	n = (size_t)(to - from + before + after);
-	status = most_pulses(s, from, (size_t)(to - from), whole, &s->scene.max_pulses);
+	a.from = from - before;
+	a.n = (size_t)(to - from + before + after);
+	a.whole = !cut && s->window == SEEK && !s->par.sources;
+	status = most_pulses(s, from, (size_t)(to - from), a.whole, &s->scene.max_pulses);
 	if (status != SEPARATE_OK)
 		return status;
 	s->scene.quiet[0] = (double)before;
@@ -152,25 +146,25 @@ enum separate_status separate_fit_section(
 	for (int c = 0; c < 2; c++)
 		s->scene.tone_knot[c] = (double)(s->buffer[c].tones.first - from +
 						 before - (c ? s->cal.shift : 0));
-	separate_hide(s, from - before, n);
+	separate_hide(s, a.from, a.n);
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
 	s->scene.give_up = cut && !s->par.sources;
-	status = separate_fit_window(s, channels_at(s, from - before).at, n, cut, &a);
+	status = separate_fit_window(s, channels_at(s, a.from).at, &a);
 	s->scene.give_up = 0;
 	if (status == SEPARATE_OK && separate_is_described(&a))
-		status = separate_fit_without_common(s, from - before, n, cut, &a);
+		status = separate_fit_without_common(s, &a);
 	if (status == SEPARATE_OK &&
 		(s->par.sources || a.goodness.stretch != SEPARATE_UNRESOLVED))
 		separate_keep_fit(s, &a);
-	if (status == SEPARATE_OK && whole && (a.m > 1 || !separate_is_described(&a)) &&
-		separate_find_foreign(s, from - before, n, 0, &event) != NUM_OK)
+	if (status == SEPARATE_OK && a.whole && (a.m > 1 || !separate_is_described(&a)) &&
+		separate_find_foreign(s, a.from, a.n, 0, &event) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && !verdict_is_foreign(event.verdict))
-		status = explain(s, from - before, n, cut, whole, &a, &event);
+		status = explain(s, &a, &event);
 	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
-		return give_event(s, from - before, n, to, &event, next);
+		return give_event(s, &a, to, &event, next);
 	for (int i = 0; i < a.m; i++) {
 		s->pulse[i].t -= (double)before;
 		s->both[i].t -= (double)before;
@@ -179,8 +173,10 @@ enum separate_status separate_fit_section(
 	if (status != SEPARATE_OK)
 		return status;
 	unresolved = a.goodness.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
+	/* In shorter windows, most pulses would be cut by the ends. */
 	shorter = unresolved && (cut || a.r.full) &&
-		  (double)(to - from) > 2 * shortest_window(s);
+		  (double)(to - from) >
+			  2 * fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
 	if (!shorter)
 		s->failures = unresolved ? s->failures + 1 : 0;
 	if (shorter || (unresolved && (!cut || s->failures == PATIENCE))) {

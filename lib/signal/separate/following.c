@@ -47,23 +47,21 @@ static void follow_delay(struct separate *s, double delay)
 
 /* The gain is kept until the mean of the last GAINS pulses differs from it by three
  * standard errors; then it is set to their mean. */
-static void follow_gain(struct separate *s, const struct joint_pulse *p)
+static void follow_gain(struct separate *s)
 {
-	double share, se, sum = 0;
+	double share, se;
 
-	joint_gain_error(s->joint, p, &share, &se);
+	joint_gain_error(s->joint, &share, &se);
 	if (!(se > 0) || isinf(se))
 		return;
-	s->gain_off[s->gains++ % GAINS] = share / se;
+	s->gain_off += share / se;
 	s->gain_sum += share / (se * se);
 	s->gain_weight += 1 / (se * se);
-	if (s->gains % GAINS)
+	if (++s->gains % GAINS)
 		return;
-	for (int i = 0; i < GAINS; i++)
-		sum += s->gain_off[i];
-	if (fabs(sum) > SIGMAS_SELDOM * sqrt(GAINS))
+	if (fabs(s->gain_off) > SIGMAS_SELDOM * sqrt(GAINS))
 		s->gain *= 1 + s->gain_sum / s->gain_weight;
-	s->gain_sum = s->gain_weight = 0;
+	s->gain_off = s->gain_sum = s->gain_weight = 0;
 }
 
 void separate_set_gain(struct separate *s, long long from)
@@ -84,5 +82,5 @@ void separate_follow(struct separate *s, const struct account *a)
 	if (separate_is_range_free(s))
 		follow_delay(s, a->pulse[0].delta);
 	if (isnan(s->par.known.gain))
-		follow_gain(s, &a->pulse[0]);
+		follow_gain(s);
 }

@@ -34,7 +34,7 @@ static struct foreign_stretch stretch_at(
 
 /* An event at one sensor, in [from, from + n), is part of a shock if the other sensor has
  * the same at the same time, which is a transit time away in the aligned channels. */
-static enum num_status look_for_other_half(struct separate *s, long long from, size_t n,
+static void look_for_other_half(struct separate *s, long long from, size_t n,
 	int component, struct foreign *event)
 {
 	int at_2 = isnan(event->t[0]);
@@ -45,21 +45,19 @@ static enum num_status look_for_other_half(struct separate *s, long long from, s
 
 	if (shift <= 0 || end > s->buffer[0].clean || end > s->buffer[1].clean ||
 		begin < s->buffer[1].begin)
-		return NUM_OK;
+		return;
 	stretch = stretch_at(s, begin, begin - shift, n, component);
 	for (int c = 0; c < 2; c++)
 		if (stretch.hidden[c])
 			stretch.hidden[c] =
 				s->buffer[c].hidden + (begin - s->buffer[c].begin);
-	if (foreign_at_once(&stretch, &shock) != NUM_OK)
-		return NUM_MEMORY;
+	foreign_at_once(&stretch, &shock);
 	if (shock.verdict != SEPARATE_SHOCK)
-		return NUM_OK;
+		return;
 	s->same_shock = begin < s->shock_end;
 	s->shock_end = end;
 	shock.t[!at_2] += (double)(at_2 ? shift : -shift);
 	*event = shock;
-	return NUM_OK;
 }
 
 enum num_status separate_find_foreign(struct separate *s, long long from, size_t n,
@@ -74,7 +72,7 @@ enum num_status separate_find_foreign(struct separate *s, long long from, size_t
 		return NUM_MEMORY;
 	if (component > 0) /* in units of the noise of the first */
 		event->amplitude *= s->quadrature.noise[isnan(event->t[0])];
-	return event->verdict == SEPARATE_TRANSIENT
-		       ? look_for_other_half(s, from, n, component, event)
-		       : NUM_OK;
+	if (event->verdict == SEPARATE_TRANSIENT)
+		look_for_other_half(s, from, n, component, event);
+	return NUM_OK;
 }

@@ -8,8 +8,8 @@
 #define SIGNAL_INSTRUMENT_H
 
 #include "num/status.h"
+#include "signal/fit/quadrature.h"
 #include "signal/learn/calibration.h"
-#include "signal/separate/quadrature.h"
 #include "signal/separate/validate.h"
 #include <stddef.h>
 

@@ -4,12 +4,9 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* Length of a block whose noise is measured, samples. */
-enum { LEVEL_BLOCK = 4096 };
-
 void separate_measure_level(struct separate *s)
 {
-	double work[LEVEL_BLOCK];
+	double work[FOLLOWING_BLOCK];
 	long long clean = s->buffer[0].clean;
 
 	for (int c = 1; c < s->channels; c++)
@@ -18,9 +15,9 @@ void separate_measure_level(struct separate *s)
 	while (s->levels < (double)s->par.learn) {
 		long long n = clean - s->level_at;
 
-		if (n < (s->ended ? SEPARATE_SHORTEST : LEVEL_BLOCK))
+		if (n < (s->ended ? SEPARATE_SHORTEST : FOLLOWING_BLOCK))
 			return;
-		n = n < LEVEL_BLOCK ? n : LEVEL_BLOCK;
+		n = n < FOLLOWING_BLOCK ? n : FOLLOWING_BLOCK;
 		for (int c = 0; c < s->channels; c++) {
 			const struct buffer *t = &s->buffer[c];
 			double level = robust_noise(

@@ -66,32 +66,30 @@ static void give_reports(struct separate *s)
 }
 
 /* Doubts those of the n rows not yet tested that may be two particles, parts of two, or
- * none.  Rows doubted already tell how often one pulse follows another as well. */
-static enum separate_status test_pairs(struct separate *s, size_t n)
+ * none; a holds n.  Rows doubted already tell how often one pulse follows another as
+ * well.
+ */
+static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 {
 	struct entry *q = s->queue + s->tested;
-	struct arrival *a = malloc((n ? n : 1) * sizeof *a);
 	double half = validation_half(s->validation);
 	int plug =
 		s->scene.delta_max - s->scene.delta_min <= 2 * calibration_plug(&s->cal);
 	struct flow flow;
 	size_t m = 0;
 
-	if (!a)
-		return SEPARATE_MEMORY;
 	validation_flow(s->validation, &flow);
 	for (size_t i = 0; i < n; i++)
-		if (q[i].arrival.group) {
-			a[m] = q[i].arrival;
+		if (q[i].evidence.pulse) {
+			a[m] = q[i].evidence;
 			/* A delay found is that of the flow and its error. */
-			if (half > 0 && q[i].evidence.var > 0)
-				a[m].exchange *=
-					exp(fmin(-0.5 * q[i].more_square /
-							 (flow.var + q[i].evidence.var),
-						300));
+			if (half > 0 && a[m].var > 0)
+				a[m].exchange *= exp(fmin(
+					-0.5 * q[i].more_square / (flow.var + a[m].var),
+					300));
 			if (q[i].row.sources > 1 && half > 0 && plug) {
-				a[m].off = (q[i].evidence.delay - flow.mean) / half;
-				a[m].off_var = q[i].evidence.var / (half * half);
+				a[m].off = (a[m].delay - flow.mean) / half;
+				a[m].off_var = a[m].var / (half * half);
 				a[m].flow_var = flow.margin / (half * half);
 			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
@@ -101,7 +99,7 @@ static enum separate_status test_pairs(struct separate *s, size_t n)
 	together_test(s->together, fmax(2, 2 * shape_reach(s->cal.shape)), a, m);
 	m = 0;
 	for (size_t i = 0; i < n; i++)
-		if (q[i].arrival.group && a[m++].doubted &&
+		if (q[i].evidence.pulse && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
 			if (fmax(a[m - 1].shape, a[m - 1].astray) > a[m - 1].pair)
@@ -109,8 +107,6 @@ static enum separate_status test_pairs(struct separate *s, size_t n)
 			else
 				s->counters.together++;
 		}
-	free(a);
-	return SEPARATE_OK;
 }
 
 enum separate_status separate_test_rows(struct separate *s)
@@ -136,9 +132,8 @@ enum separate_status separate_test_rows(struct separate *s)
 		s->counters.foreign += q->evidence.fits;
 		q->row.verdict = SEPARATE_MISFIT;
 	}
+	test_pairs(s, e, n);
 	free(e);
-	if (test_pairs(s, n) != SEPARATE_OK)
-		return SEPARATE_MEMORY;
 	s->tested = s->count;
 	give_reports(s);
 	return SEPARATE_OK;

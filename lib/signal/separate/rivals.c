@@ -40,25 +40,26 @@ static double penalised(const struct joint_scene *s, const struct account *a)
 	return a->r.chi2 + s->threshold_near * a->m;
 }
 
-enum separate_status separate_try_rivals(
-	struct separate *s, long long from, size_t n, int cut, struct account *a)
+enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 {
 	enum { IMPULSES, VELOCITIES, SIGNS, RIVALS };
 	const int described = separate_is_described(a);
 	const struct joint_scene plain = s->scene;
-	const struct channels y = channels_at(s, from);
+	const struct channels y = channels_at(s, a->from);
 	enum separate_status status = SEPARATE_OK;
 	int found = 0, most, tried;
 
-	most = (int)fmax(fmin(a->m, MOST * (double)n / s->cal.duration), 1);
-	if (cut && a->m > 2 * most)
+	most = (int)fmax(fmin(a->m, MOST * (double)a->n / s->cal.duration), 1);
+	if (a->cut && a->m > 2 * most)
 		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
-	if (room_for(&s->spikes, &s->spike_room, 2 * n, sizeof *s->spikes))
+	if (room_for(&s->spikes, &s->spike_room, 2 * a->n, sizeof *s->spikes))
 		return SEPARATE_MEMORY;
 	for (int k = described ? SIGNS : 0; k < RIVALS && status == SEPARATE_OK && !found;
 		k++) {
-		struct account rival = { .m = 0 };
+		struct account rival = {
+			.from = a->from, .n = a->n, .cut = a->cut, .whole = a->whole
+		};
 
 		s->scene = plain;
 		s->scene.max_pulses = tried;
@@ -67,9 +68,10 @@ enum separate_status separate_try_rivals(
 		if (k == VELOCITIES)
 			separate_widen(s);
 		s->scene.signs = k == SIGNS;
-		if (k == IMPULSES && (s->cal.whitening.tap || !hide_spikes(s, from, n)))
+		if (k == IMPULSES &&
+			(s->cal.whitening.tap || !hide_spikes(s, a->from, a->n)))
 			continue;
-		status = separate_fit_window(s, y.at, n, cut, &rival);
+		status = separate_fit_window(s, y.at, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
 			rival.m <= most &&
 			(!described || penalised(&plain, &rival) < penalised(&plain, a));
@@ -80,7 +82,7 @@ enum separate_status separate_try_rivals(
 	}
 	s->scene = plain;
 	if (found && !a->impulses)
-		status = separate_fit_without_common(s, from, n, cut, a);
+		status = separate_fit_without_common(s, a);
 	if (found && status == SEPARATE_OK) {
 		separate_keep_fit(s, a);
 		separate_follow(s, a);

@@ -67,17 +67,15 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
 		.amplitude = p->a,
-		.time = ((double)from + p->t) / s->cal.duration };
-	entry->arrival = (struct arrival){
-		.group = s->group, .time = entry->evidence.time, .amplitude = p->a
-	};
+		.time = ((double)from + p->t) / s->cal.duration,
+		.pulse = 1 };
 	/* Within its standard error a delay is right either way. */
 	if (entry->evidence.var > 0 &&
 		fabs(p->other_delta - p->delta) > SIGMAS_SELDOM * sqrt(delay_var))
-		entry->arrival.exchange = p->exchange;
+		entry->evidence.exchange = p->exchange;
 	entry->more_square = p->more_square;
-	memcpy(entry->arrival.odds, s->pair_odds[p - s->pulse],
-		sizeof entry->arrival.odds);
+	memcpy(entry->evidence.odds, s->pair_odds[p - s->pulse],
+		sizeof entry->evidence.odds);
 	s->counters.rows++;
 	s->counters.negative += p->a < 0;
 	return SEPARATE_OK;

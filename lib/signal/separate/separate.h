@@ -7,15 +7,6 @@
  * longer than window are separated window by window; pulses near the end of one are the
  * first guesses of the next.  The cuts depend on the record alone, so that the particles
  * do not depend on the sizes of the pieces passed; memory is bounded by learn and window.
- *
- *	struct separate *s = separate_new(&par);
- *	while ((n = read(x)) > 0 && separate_push(s, x, n) == SEPARATE_OK)
- *		while (separate_next(s, &p))
- *			print(&p);
- *	if (separate_end(s) == SEPARATE_OK)
- *		while (separate_next(s, &p))
- *			print(&p);
- *	separate_free(s);
  */
 #ifndef SIGNAL_SEPARATE_H
 #define SIGNAL_SEPARATE_H

@@ -7,9 +7,9 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
+#include "signal/fit/quadrature.h"
 #include "signal/separate/buffer.h"
 #include "signal/separate/converter.h"
-#include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
@@ -21,8 +21,7 @@ enum { CHANNELS_MAX = 4 };
 struct entry {
 	struct transit row;
 	struct evidence evidence;
-	struct arrival arrival; /* its group 0: none */
-	double more_square;     /* as that of joint_pulse */
+	double more_square; /* as that of joint_pulse */
 };
 
 /* A section to be reported once its rows are tested. */
@@ -77,8 +76,7 @@ struct separate {
 	int crowded;        /* 1: long sections hold too many pulses */
 	int ratio;          /* samples of the record in one of buffer */
 	size_t awaited;     /* samples of buffer to learn from means */
-	long long averaged; /* first sample of the record from which they are averaged
-			       again */
+	long long averaged; /* no means are tried before this sample of the record */
 	int channels;       /* of the record */
 	struct converter converter[CHANNELS_MAX]; /* of each channel, in their order */
 	struct buffer buffer[CHANNELS_MAX];
@@ -86,7 +84,6 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
-	struct joint_scene fitted; /* of the last fit of a window */
 	struct common common;
 	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
@@ -97,17 +94,17 @@ struct separate {
 	enum window window;
 	size_t span;           /* longest window if SHORTER */
 	int failures;          /* consecutive windows that were not resolved */
-	int strange;           /* DENSE although the section is short */
-	long long shock_end;   /* of the last one that began in two sections */
-	int same_shock;        /* the event found is that one */
+	int strange;           /* 1: DENSE although the section is short */
+	long long shock_end;   /* of the last shock that was found by one of its halves */
+	int same_shock;        /* 1: the event found is its other half */
 	unsigned char *spikes; /* flags of impulses */
 	size_t spike_room;
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
-				   standard errors */
-	double gain_sum, gain_weight;
+	/* Of the last GAINS such pulses or fewer: sums of the relative deviations of the
+	 * gain in standard errors, of these by their weights, and of the weights. */
+	double gain_off, gain_sum, gain_weight;
 	int gains;
 	long number;
 	long long done; /* samples before this one are done */
@@ -130,6 +127,10 @@ struct separate {
 
 /* One explanation of a window: its pulses, and the goodness of their fit. */
 struct account {
+	long long from;
+	size_t n;  /* samples from this one on */
+	int cut;   /* 1: the section goes on behind it */
+	int whole; /* 1: it is a section whose number of sources is not given */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int m, done; /* pulses, and those before the boundary */
 	double boundary;
@@ -266,10 +267,10 @@ int separate_is_other_noise(const struct separate *s);
 /* Excludes the samples that the converter has not measured from the fit.  Not if the
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window of n samples of channels y, with the first a->m pulses of a as
- * guesses, and tests the fit. */
-enum separate_status separate_fit_window(struct separate *s, const double *const y[],
-	size_t n, int cut, struct account *a);
+/* Fits channels y of a window, with the first a->m pulses of a as guesses, and tests the
+ * fit. */
+enum separate_status separate_fit_window(
+	struct separate *s, const double *const y[], struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
 void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
@@ -286,8 +287,7 @@ enum num_status separate_measure_common(
 /* Samples on either side of a window that tell its noise; 0: none are needed. */
 long long separate_common_reach(const struct separate *s);
 /* Fits a window that a describes again, without what the noise has in common. */
-enum separate_status separate_fit_without_common(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+enum separate_status separate_fit_without_common(struct separate *s, struct account *a);
 
 /* following.c */
 
@@ -307,8 +307,7 @@ void separate_set_gain(struct separate *s, long long from);
  * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
  * accepted if it describes the window with no more pulses than before, or with one.  Of a
  * window that they describe only the last is tried, which has to be likelier. */
-enum separate_status separate_try_rivals(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+enum separate_status separate_try_rivals(struct separate *s, struct account *a);
 
 /* foreign_event.c */
 

@@ -4,10 +4,6 @@
 #include "num/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Rows by which the present one is tested: they know a share of 0.7 % to 0.5 %. */
-enum { LATELY = 256 };
 
 /* Expected share of wrong rows among those that are not doubted.  0.01, 0.007, 0.005 and
  * 0.0025 leave 1.9, 1.4, 0.8 and 0.4 % of them wrong in twelve records of 100 to 250
@@ -31,21 +27,17 @@ static const double WEAK = 0.1;
 static const double UNLIKELY = 0.01;
 
 struct together {
-	double any[LATELY];    /* logarithms of amplitudes, of doubted rows too */
-	int alone[LATELY];     /* all of these rows */
-	double size[LATELY];   /* logarithms of amplitudes of rows not doubted */
-	int weak[LATELY];      /* beside larger pulses, ... */
-	double beside[LATELY]; /* ... of which this is the logarithm of the largest */
-	int followers[LATELY]; /* NEAR to FAR behind each; -1: it is weak */
-	double wrong[LATELY], pair[LATELY];  /* probabilities */
-	double off[LATELY], off_var[LATELY]; /* of arrivals */
-	size_t rows, all;                    /* taken in so far: not doubted, and all */
-	double density;                      /* followers per duration */
-	double mean, sd, width;              /* of sizes, and of their kernel */
-	double astray;              /* share of delays that are not of the flow */
-	double flow_var, least_var; /* variance of the others, and a bound of it */
-	double least;               /* rows in company that are smaller are none */
-	double limit;               /* probability beyond which rows are doubted */
+	struct evidence row[EVIDENCE_KEPT]; /* not doubted */
+	double any[EVIDENCE_KEPT];    /* logarithms of amplitudes, of doubted rows too */
+	int alone[EVIDENCE_KEPT];     /* all of these rows */
+	int followers[EVIDENCE_KEPT]; /* NEAR to FAR behind each; -1: it is weak */
+	size_t rows, all;             /* taken in so far: not doubted, and all */
+	double density;               /* followers per duration */
+	double mean, sd, width;       /* of sizes, and of their kernel */
+	double astray;                /* share of delays that are not of the flow */
+	double flow_var, least_var;   /* variance of the others, and a bound of it */
+	double least;                 /* rows in company that are smaller are none */
+	double limit;                 /* probability beyond which rows are doubted */
 };
 
 struct together *together_new(void)
@@ -58,17 +50,7 @@ void together_free(struct together *t)
 	free(t);
 }
 
-static double wrong(const struct arrival *a)
-{
-	return 1 - (1 - a->pair) * (1 - a->shape) * (1 - a->astray) / (1 + a->exchange);
-}
-
-static size_t held(size_t count)
-{
-	return count < LATELY ? count : LATELY;
-}
-
-static int count_followers(const struct arrival *a, size_t i, size_t n)
+static int count_followers(const struct evidence *a, size_t i, size_t n)
 {
 	int count = a[i].weak ? -1 : 0;
 
@@ -84,7 +66,7 @@ static int count_followers(const struct arrival *a, size_t i, size_t n)
 
 /* The largest pulse on one side of pulse i, step 1 or -1; 0: there is none. */
 static double largest_beside(
-	const struct arrival *a, size_t i, size_t n, double beside, int step)
+	const struct evidence *a, size_t i, size_t n, double beside, int step)
 {
 	double largest = 0;
 
@@ -118,10 +100,10 @@ static double size_density(const struct together *t, double x, size_t self, doub
 {
 	double sum = unlike(t, x), all = 1, width = hypot(t->width, blur);
 
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		if (i != self) {
-			sum += (1 - t->wrong[i]) * kernel(x - t->size[i], width);
-			all += 1 - t->wrong[i];
+			sum += (1 - t->row[i].wrong) * kernel(x - t->row[i].size, width);
+			all += 1 - t->row[i].wrong;
 		}
 	return sum / all;
 }
@@ -133,25 +115,25 @@ static double size_density(const struct together *t, double x, size_t self, doub
 static double best_width(const struct together *t, double widest)
 {
 	enum { WIDTHS = 4 };
-	double others[LATELY][WIDTHS] = { { 0 } }, most = -INFINITY, best = widest;
+	double others[EVIDENCE_KEPT][WIDTHS] = { { 0 } }, most = -INFINITY, best = widest;
 
-	for (size_t i = 0; i < held(t->rows); i++)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
 		for (size_t k = 0; k < i; k++) {
-			double z = (t->size[i] - t->size[k]) / widest;
+			double z = (t->row[i].size - t->row[k].size) / widest;
 			double one = exp(-0.5 * z * z);
 
 			/* Of half the width it is the fourth power. */
 			for (int w = 0; w < WIDTHS; w++, one *= one * one * one) {
-				others[i][w] += (1 - t->wrong[k]) * one;
-				others[k][w] += (1 - t->wrong[i]) * one;
+				others[i][w] += (1 - t->row[k].wrong) * one;
+				others[k][w] += (1 - t->row[i].wrong) * one;
 			}
 		}
 	for (int w = 0; w < WIDTHS; w++) {
 		double width = ldexp(widest, -w), sum = 0;
 
-		for (size_t i = 0; i < held(t->rows); i++)
-			sum += (1 - t->wrong[i]) *
-			       log(unlike(t, t->size[i]) +
+		for (size_t i = 0; i < evidence_kept(t->rows); i++)
+			sum += (1 - t->row[i].wrong) *
+			       log(unlike(t, t->row[i].size) +
 				       others[i][w] / (sqrt(2 * M_PI) * width));
 		if (sum > most) {
 			most = sum;
@@ -167,23 +149,23 @@ static void learn(struct together *t)
 {
 	double n = 0, strong = 0, pairs = 0, mean = 0, square = 0, sum = 0, followed = 0;
 
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (t->followers[i] >= 0) {
 			sum += t->followers[i];
 			followed++;
 		}
-	for (size_t i = 0; i < held(t->rows); i++) {
-		n += 1 - t->wrong[i];
-		strong += t->weak[i] ? 0 : 1 - t->wrong[i];
-		pairs += t->pair[i];
-		mean += (1 - t->wrong[i]) * t->size[i];
+	for (size_t i = 0; i < evidence_kept(t->rows); i++) {
+		n += 1 - t->row[i].wrong;
+		strong += t->row[i].weak ? 0 : 1 - t->row[i].wrong;
+		pairs += t->row[i].pair;
+		mean += (1 - t->row[i].wrong) * t->row[i].size;
 	}
 	n = fmax(n, 1);
 	mean /= n;
-	for (size_t i = 0; i < held(t->rows); i++)
-		square += (1 - t->wrong[i]) * pow(t->size[i] - mean, 2);
-	t->density = n / fmax(strong, 1) * (1 + pairs / (double)held(t->rows)) * sum /
-		     fmax(followed, 1) / (FAR - NEAR);
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
+		square += (1 - t->row[i].wrong) * pow(t->row[i].size - mean, 2);
+	t->density = n / fmax(strong, 1) * (1 + pairs / (double)evidence_kept(t->rows)) *
+		     sum / fmax(followed, 1) / (FAR - NEAR);
 	t->mean = mean;
 	t->sd = fmax(sqrt(square / n), 0.01);
 	t->width = 1.06 * t->sd * pow(n, -0.2);
@@ -194,10 +176,9 @@ static void learn(struct together *t)
 /* Probability that a row is a pair.  With f the density of amplitudes, pairs of sum A and
  * share w of the smaller one are A f(wA) f((1 - w)A) / f(A) times as frequent as one of
  * A, per follower. */
-static double pair_probability(
-	const struct together *t, const struct arrival *a, size_t self)
+static double pair_probability(const struct together *t, size_t self)
 {
-	double x = log(fabs(a->amplitude)), odds = 0, one;
+	double x = t->row[self].size, odds = 0, one;
 
 	if (t->density == 0)
 		return 0;
@@ -205,7 +186,7 @@ static double pair_probability(
 	for (int k = 0; k < JOINT_SHARES; k++) {
 		double w = joint_share(k), step = JOINT_SHARE_STEP / sqrt(12);
 
-		odds += a->odds[k] * JOINT_SHARE_STEP *
+		odds += t->row[self].odds[k] * JOINT_SHARE_STEP *
 			size_density(t, x + log(w), self, step / w) *
 			size_density(t, x + log(1 - w), self, step / (1 - w)) /
 			(w * (1 - w) * one);
@@ -223,17 +204,17 @@ static double shape_probability(const struct together *t, double x)
 {
 	double weak = 1, strong = 1, seen = 0, others = unlike(t, x), random;
 
-	for (size_t i = 0; i < held(t->rows); i++) {
-		double here = kernel(x - t->size[i], t->width);
+	for (size_t i = 0; i < evidence_kept(t->rows); i++) {
+		double here = kernel(x - t->row[i].size, t->width);
 
-		if (t->weak[i])
+		if (t->row[i].weak)
 			seen += here;
 		else
-			others += (1 - t->wrong[i]) * here;
-		if (t->beside[i] + log(WEAK) > x)
-			weak += 1 - t->wrong[i];
+			others += (1 - t->row[i].wrong) * here;
+		if (t->row[i].beside + log(WEAK) > x)
+			weak += 1 - t->row[i].wrong;
 		else
-			strong += 1 - t->wrong[i];
+			strong += 1 - t->row[i].wrong;
 	}
 	random = weak / strong * others;
 	random += 2 * sqrt((1 + weak / strong) * random * kernel(0, t->width));
@@ -247,14 +228,14 @@ static double least_alone(const struct together *t)
 {
 	double least = INFINITY, alone = 0, company = 0, chance = 1;
 
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (t->alone[i]) {
 			least = fmin(least, t->any[i]);
 			alone++;
 		} else {
 			company++;
 		}
-	for (size_t i = 0; i < held(t->all); i++)
+	for (size_t i = 0; i < evidence_kept(t->all); i++)
 		if (!t->alone[i] && t->any[i] < least) {
 			chance *= company / (alone + company);
 			company--;
@@ -295,24 +276,24 @@ static void learn_astray(struct together *t)
 	for (int step = 0; step < STEPS; step++) {
 		double sum = 0, square = 0, n = 0;
 
-		for (size_t i = 0; i < held(t->rows); i++)
-			if (t->off_var[i] > 0) {
-				double p =
-					astray_probability(t, t->off[i], t->off_var[i]);
+		for (size_t i = 0; i < evidence_kept(t->rows); i++)
+			if (t->row[i].off_var > 0) {
+				double p = astray_probability(
+					t, t->row[i].off, t->row[i].off_var);
 
 				sum += p;
-				square += (1 - p) *
-					  (t->off[i] * t->off[i] - 2 * t->off_var[i]);
+				square += (1 - p) * (t->row[i].off * t->row[i].off -
+							    2 * t->row[i].off_var);
 				n++;
 			}
 		t->astray = fmin(sum / fmax(n, 1), 0.5);
 		t->flow_var = fmax(square / fmax(n - sum, 1), t->least_var);
 	}
-	for (size_t i = 0; i < held(t->rows); i++)
-		if (t->off_var[i] > 0)
+	for (size_t i = 0; i < evidence_kept(t->rows); i++)
+		if (t->row[i].off_var > 0)
 			gain += 2 * log(1 - t->astray +
-					    t->astray * astray_odds(t, t->off[i],
-								t->off_var[i]));
+					    t->astray * astray_odds(t, t->row[i].off,
+								t->row[i].off_var));
 	if (gain < LIKELIHOOD_CERTAIN)
 		t->astray = 0;
 }
@@ -321,10 +302,11 @@ static void learn_astray(struct together *t)
  * wrong. */
 static double find_limit(const struct together *t)
 {
-	double sorted[LATELY], sum = 0;
-	size_t n = held(t->rows), k = 0;
+	double sorted[EVIDENCE_KEPT], sum = 0;
+	size_t n = evidence_kept(t->rows), k = 0;
 
-	memcpy(sorted, t->wrong, n * sizeof *sorted);
+	for (size_t i = 0; i < n; i++)
+		sorted[i] = t->row[i].wrong;
 	sort_numbers(sorted, n);
 	while (k < n && sorted[k] <= 0.5 && sum + sorted[k] <= SHARE * (double)(k + 1))
 		sum += sorted[k++];
@@ -335,50 +317,42 @@ static double find_limit(const struct together *t)
  */
 enum { PASSES = 4 };
 
-/* The probabilities of rows [begin, end), of which the first not doubted is row first. */
-static void tell(
-	struct together *t, size_t first, struct arrival *a, size_t begin, size_t end)
+/* The probabilities of the rows from first on. */
+static void tell(struct together *t, size_t first)
 {
-	for (size_t i = begin; i < end; i++)
-		if (!a[i].doubted) {
-			size_t self = first++ % LATELY;
+	for (; first < t->rows; first++) {
+		size_t self = first % EVIDENCE_KEPT;
+		struct evidence *r = &t->row[self];
 
-			a[i].pair = pair_probability(t, &a[i], self);
-			a[i].shape = !a[i].alone && t->size[self] < t->least ? 1
-				     : t->weak[self] ? shape_probability(t, t->size[self])
-						     : 0;
-			/* Not if the delay is more like those of the flow. */
-			a[i].astray =
-				astray_odds(t, a[i].off, a[i].off_var) > 1
-					? astray_probability(t, a[i].off, a[i].off_var)
-					: 0;
-			t->wrong[self] = wrong(&a[i]);
-			t->pair[self] = a[i].pair;
-		}
+		r->pair = pair_probability(t, self);
+		r->shape = !r->alone && r->size < t->least ? 1
+			   : r->weak                       ? shape_probability(t, r->size)
+							   : 0;
+		/* Not if the delay is more like those of the flow. */
+		r->astray = astray_odds(t, r->off, r->off_var) > 1
+				    ? astray_probability(t, r->off, r->off_var)
+				    : 0;
+		r->wrong = 1 - (1 - r->pair) * (1 - r->shape) * (1 - r->astray) /
+				       (1 + r->exchange);
+	}
 }
 
 /* Judges rows [begin, end) of n, as many as are held or fewer. */
 static void test_some(
-	struct together *t, struct arrival *a, size_t n, size_t begin, size_t end)
+	struct together *t, struct evidence *a, size_t n, size_t begin, size_t end)
 {
 	size_t first = t->rows;
 
 	for (size_t i = begin; i < end; i++) {
-		t->followers[t->all % LATELY] = count_followers(a, i, n);
-		t->alone[t->all % LATELY] = a[i].alone;
-		t->any[t->all++ % LATELY] = log(fabs(a[i].amplitude));
-		if (!a[i].doubted) {
-			size_t at = t->rows++ % LATELY;
-
-			t->wrong[at] = t->pair[at] = 0;
-			t->off[at] = a[i].off;
-			if (a[i].off_var > 0)
-				t->least_var = a[i].flow_var;
-			t->off_var[at] = a[i].off_var;
-			t->weak[at] = a[i].weak;
-			t->beside[at] = log(a[i].beside);
-			t->size[at] = log(fabs(a[i].amplitude));
-		}
+		t->followers[t->all % EVIDENCE_KEPT] = count_followers(a, i, n);
+		t->alone[t->all % EVIDENCE_KEPT] = a[i].alone;
+		t->any[t->all++ % EVIDENCE_KEPT] = a[i].size;
+		a[i].wrong = a[i].pair = 0;
+		if (a[i].doubted)
+			continue;
+		if (a[i].off_var > 0)
+			t->least_var = a[i].flow_var;
+		t->row[t->rows++ % EVIDENCE_KEPT] = a[i];
 	}
 	if (t->rows == first)
 		return;
@@ -386,22 +360,28 @@ static void test_some(
 	learn_astray(t);
 	for (int pass = 0; pass < PASSES; pass++) {
 		learn(t);
-		tell(t, first, a, begin, end);
+		tell(t, first);
 	}
 	t->limit = find_limit(t);
 	for (size_t i = begin; i < end; i++)
-		a[i].doubted |= wrong(&a[i]) > t->limit;
+		if (!a[i].doubted) {
+			a[i] = t->row[first++ % EVIDENCE_KEPT];
+			a[i].doubted = a[i].wrong > t->limit;
+		}
 }
 
-void together_test(struct together *t, double beside, struct arrival *a, size_t n)
+void together_test(struct together *t, double beside, struct evidence *a, size_t n)
 {
 	for (size_t i = 0; i < n; i++) {
-		a[i].beside = fmax(largest_beside(a, i, n, beside, 1),
+		double largest = fmax(largest_beside(a, i, n, beside, 1),
 			largest_beside(a, i, n, beside, -1));
-		a[i].weak = fabs(a[i].amplitude) < WEAK * a[i].beside;
+
+		a[i].size = log(fabs(a[i].amplitude));
+		a[i].beside = log(largest);
+		a[i].weak = fabs(a[i].amplitude) < WEAK * largest;
 		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}
-	for (size_t i = 0; i < n; i += LATELY)
-		test_some(t, a, n, i, n - i < LATELY ? n : i + LATELY);
+	for (size_t i = 0; i < n; i += EVIDENCE_KEPT)
+		test_some(t, a, n, i, n - i < EVIDENCE_KEPT ? n : i + EVIDENCE_KEPT);
 }

@@ -24,35 +24,16 @@
 #ifndef SIGNAL_TOGETHER_H
 #define SIGNAL_TOGETHER_H
 
-#include "signal/fit/joint.h"
+#include "signal/separate/validate.h"
 #include <stddef.h>
-
-struct arrival {
-	int group;   /* pulses of one fit have the same number */
-	double time; /* in durations, ascending within a group */
-	double amplitude;
-	double odds[JOINT_SHARES]; /* for one other arrival per duration */
-	/* Of a pulse fitted with others: its delay less that of the flow, over half of
-	 * the range searched, and the variance of this; 0: not known.  flow_var: least
-	 * variance of such delays in the flow. */
-	double off, off_var, flow_var;
-	double exchange; /* odds of having the arrival of another pulse at sensor 2 */
-	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
-	 * of the flow; set by together_test(). */
-	double pair, shape, astray;
-	double beside; /* the largest pulse that it overlaps, or 0; set by together_test()
-			*/
-	int weak, alone; /* beside a larger one, and by itself; set by together_test() */
-	int doubted; /* already, and then its size does not count; or by together_test()
-		      */
-};
 
 struct together;
 struct together *together_new(void); /* NULL: no memory */
 void together_free(struct together *t);
 
-/* Takes in n arrivals, groups undivided and in order, and tests them.  Pulses nearer than
- * beside, in durations, overlap. */
-void together_test(struct together *t, double beside, struct arrival *a, size_t n);
+/* Takes in n pulses, groups undivided and in order, and tests them; the size of one that
+ * is doubted already does not count.  Pulses nearer than beside, in durations, overlap.
+ */
+void together_test(struct together *t, double beside, struct evidence *a, size_t n);
 
 #endif

@@ -4,13 +4,11 @@
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
-	LATELY = 256, /* latest rows, by which others are tested */
-	FEW = 8,      /* fewest delays for an estimate of the variance */
-	REACH = 6,    /* durations on either side of a strong pulse */
-	CLASSES = 8,  /* of distance in a duration */
+	FEW = 8,     /* fewest delays for an estimate of the variance */
+	REACH = 6,   /* durations on either side of a strong pulse */
+	CLASSES = 8, /* of distance in a duration */
 	PLACES = 2 * REACH * CLASSES
 };
 
@@ -20,13 +18,11 @@ struct delay {
 };
 
 struct validation {
-	struct delay delay[LATELY];
-	unsigned char doubted[LATELY], at_edge[LATELY];
-	size_t delays, rows;      /* taken in so far */
-	double middle, half;      /* of the range of delays; half 0: not known */
-	double mean, var, margin; /* of the delays; margin: an upper bound of var */
-	double known;             /* number of delays they are estimated from */
-	struct flow told;
+	struct delay delay[EVIDENCE_KEPT];
+	unsigned char doubted[EVIDENCE_KEPT], at_edge[EVIDENCE_KEPT];
+	size_t delays, rows;    /* taken in so far */
+	double middle, half;    /* of the range of delays; half 0: not known */
+	struct flow flow, told; /* as estimated, and as told before */
 	double recurring[PLACES], distant[CLASSES], groups;
 };
 
@@ -53,13 +49,7 @@ void validation_tell_flow(struct validation *v, const struct flow *flow)
 
 void validation_flow(const struct validation *v, struct flow *flow)
 {
-	*flow = v->known > 0 ? (struct flow){ v->mean, v->var, v->margin, v->known }
-			     : v->told;
-}
-
-static size_t held(size_t count)
-{
-	return count < LATELY ? count : LATELY;
+	*flow = v->flow.count > 0 ? v->flow : v->told;
 }
 
 /* Number of rows of the group that begins at row i. */
@@ -92,7 +82,7 @@ static void take_delay(struct validation *v, const struct evidence *e, size_t m)
 			largest = i;
 	if (!fits(e, m) || !(e[largest].var > 0))
 		return;
-	v->delay[v->delays++ % LATELY] =
+	v->delay[v->delays++ % EVIDENCE_KEPT] =
 		(struct delay){ e[largest].delay, e[largest].var, m == 1 };
 }
 
@@ -100,39 +90,34 @@ static void take_delay(struct validation *v, const struct evidence *e, size_t m)
  * any. */
 static void learn_flow(struct validation *v)
 {
-	double x[LATELY], y[LATELY], scale, sum = 0, count = 0;
+	double x[EVIDENCE_KEPT], scale, sum = 0, count = 0;
 	size_t n = 0, alone = 0;
 
-	for (size_t i = 0; i < held(v->delays); i++)
+	for (size_t i = 0; i < evidence_kept(v->delays); i++)
 		alone += (size_t)v->delay[i].alone;
-	for (size_t i = 0; i < held(v->delays); i++)
+	for (size_t i = 0; i < evidence_kept(v->delays); i++)
 		if (v->delay[i].alone || alone < FEW)
 			x[n++] = v->delay[i].value;
-	v->var = INFINITY;
-	v->known = 0;
 	if (n < FEW) {
-		if (v->told.count > 0) {
-			v->mean = v->told.mean;
-			v->var = v->told.var;
-			v->margin = v->told.margin;
-		}
+		v->flow = v->told.count > 0 ? v->told : (struct flow){ .var = INFINITY };
+		v->flow.count = 0;
 		return;
 	}
-	memcpy(y, x, n * sizeof *x);
-	v->mean = robust_median(y, n);
-	scale = robust_spread(y, n);
-	for (size_t i = 0; i < held(v->delays); i++) {
+	v->flow.mean = robust_median(x, n);
+	scale = robust_spread(x, n);
+	for (size_t i = 0; i < evidence_kept(v->delays); i++) {
 		const struct delay *d = &v->delay[i];
-		double off = d->value - v->mean;
+		double off = d->value - v->flow.mean;
 
 		if ((!d->alone && alone >= FEW) || fabs(off) > SIGMAS_NEVER * scale)
 			continue;
 		sum += off * off - d->var;
 		count++;
 	}
-	v->known = count;
-	v->var = fmax(sum / count, 0);
-	v->margin = fmax(v->var, scale * scale) * (1 + SIGMAS_SELDOM * sqrt(2 / count));
+	v->flow.count = count;
+	v->flow.var = fmax(sum / count, 0);
+	v->flow.margin =
+		fmax(v->flow.var, scale * scale) * (1 + SIGMAS_SELDOM * sqrt(2 / count));
 }
 
 /* 1 if the velocities of a group are not those of the flow, by the cube root of
@@ -141,11 +126,12 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 {
 	double sum = 0, spread = 2 / (9 * (double)m);
 
-	if (m < 2 || isinf(v->var))
+	if (m < 2 || isinf(v->flow.var))
 		return 0;
 	for (size_t i = 0; i < m; i++)
 		if (e[i].var > 0)
-			sum += pow(e[i].delay - v->mean, 2) / (v->margin + 2 * e[i].var);
+			sum += pow(e[i].delay - v->flow.mean, 2) /
+			       (v->flow.margin + 2 * e[i].var);
 	return cbrt(sum / (double)m) > 1 - spread + SIGMAS_NEVER * sqrt(spread);
 }
 
@@ -162,7 +148,7 @@ static int is_at_edge(const struct validation *v, const struct evidence *e)
 
 double validation_half(const struct validation *v)
 {
-	return isfinite(v->var) ? v->half : 0;
+	return isfinite(v->flow.var) ? v->half : 0;
 }
 
 /* --- weak pulses that recur */
@@ -272,10 +258,10 @@ static int too_many_at_limit(
 	double mean = 0, term, tail = 1;
 	int count = 0;
 
-	if (!(v->half > 0) || isinf(v->var))
+	if (!(v->half > 0) || isinf(v->flow.var))
 		return 0;
 	for (size_t i = 0; i < m; i++) {
-		double sd = sqrt(v->var + e[i].var), off = v->mean - v->middle;
+		double sd = sqrt(v->flow.var + e[i].var), off = v->flow.mean - v->middle;
 
 		if (!(e[i].var > 0) || !e[i].fits)
 			continue;
@@ -309,10 +295,11 @@ static int fails(struct validation *v, const struct evidence *e, size_t n)
 	size_t sum = 0, edge = 0, rows;
 
 	for (size_t i = 0; i < n; i++) {
-		v->doubted[v->rows % LATELY] = (unsigned char)e[i].doubted;
-		v->at_edge[v->rows++ % LATELY] = (unsigned char)is_at_edge(v, &e[i]);
+		v->doubted[v->rows % EVIDENCE_KEPT] = (unsigned char)e[i].doubted;
+		v->at_edge[v->rows++ % EVIDENCE_KEPT] =
+			(unsigned char)is_at_edge(v, &e[i]);
 	}
-	rows = held(v->rows);
+	rows = evidence_kept(v->rows);
 	for (size_t i = 0; i < rows; i++) {
 		sum += v->doubted[i];
 		edge += v->at_edge[i];

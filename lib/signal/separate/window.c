@@ -4,16 +4,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Position at which a window of n samples is cut: the widest gap between arrivals in its
+/* Position at which a window is cut: the widest gap between arrivals in its
  * later half that leaves room for the pulses behind it. */
-static double choose_cut(const struct separate *s, int m, size_t n)
+static double choose_cut(const struct separate *s, const struct account *a)
 {
-	double lo = 0.4 * (double)n, widest = -1, cut = 0;
-	double hi = (double)n - 2.2 * shape_reach(s->cal.shape) * s->cal.duration;
+	double n = (double)a->n, lo = 0.4 * n, widest = -1, cut = 0;
+	double hi = n - 2.2 * shape_reach(s->cal.shape) * s->cal.duration;
 
-	for (int i = 0; i <= m; i++) {
-		double from = i ? s->pulse[i - 1].t : 0,
-		       to = i < m ? s->pulse[i].t : (double)n;
+	for (int i = 0; i <= a->m; i++) {
+		double from = i ? a->pulse[i - 1].t : 0,
+		       to = i < a->m ? a->pulse[i].t : n;
 
 		if (from < lo)
 			from = lo;
@@ -40,24 +40,23 @@ void separate_hide(struct separate *s, long long from, size_t n)
 }
 
 enum separate_status separate_fit_window(
-	struct separate *s, const double *const y[], size_t n, int cut, struct account *a)
+	struct separate *s, const double *const y[], struct account *a)
 {
 	enum joint_status status =
-		joint_fit(s->joint, &s->scene, y[0], y[1], n, a->pulse, &a->m, &a->r);
+		joint_fit(s->joint, &s->scene, y[0], y[1], a->n, a->pulse, &a->m, &a->r);
 
 	if (status != JOINT_OK)
 		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
-	s->fitted = s->scene;
 	s->counters.fits++;
 	s->counters.steps += (double)a->r.steps;
 	s->counters.searches += (double)a->r.searches;
 	memcpy(s->pulse, a->pulse, sizeof s->pulse);
-	a->boundary = cut ? choose_cut(s, a->m, n) : INFINITY;
+	a->boundary = a->cut ? choose_cut(s, a) : INFINITY;
 	a->done = 0;
 	while (a->done < a->m && a->pulse[a->done].t < a->boundary)
 		a->done++;
-	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
-		s->cal.chi2 < CALIBRATE_TOLERABLE || s->cal.dense, &a->r, &a->goodness);
+	goodness_of_fit(s->joint, a->done, a->boundary,
+		s->cal.chi2 < CALIBRATE_TOLERABLE || s->cal.dense, &a->goodness);
 	return SEPARATE_OK;
 }
 
@@ -85,8 +84,7 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 		if (has_quadrature(s) || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
 		else
-			joint_pair_odds(s->joint, &s->fitted, a->pulse, i, scatter,
-				s->pair_odds[i]);
+			joint_pair_odds(s->joint, i, scatter, s->pair_odds[i]);
 }
 
 int separate_is_described(const struct account *a)

@@ -98,12 +98,14 @@ static void subtract(const struct separate *s, const struct joint_pulse *pulse, 
 	}
 }
 
-/* Residual of the other channel during the n samples of channel c that begin at from:
- * less the pulses of this window and those that are found there.  *noise: in y; NULL: it
- * is not only noise, or not known. */
-static enum separate_status noise_beside(struct separate *s, long long from, size_t n,
-	int c, const struct account *a, double *y[2], double *work, const double **noise)
+/* Residual of the other channel during the window of channel c: less the pulses of this
+ * window and those that are found there.  *noise: in y; NULL: it is not only noise, or
+ * not known. */
+static enum separate_status noise_beside(struct separate *s, int c,
+	const struct account *a, double *y[2], double *work, const double **noise)
 {
+	long long from = a->from;
+	size_t n = a->n;
 	long long pad = pulse_length(s);
 	long long at = from - pad + (c ? s->cal.shift : -s->cal.shift);
 	size_t length = n + 2 * (size_t)pad;
@@ -163,11 +165,10 @@ static void describe(struct separate *s, const struct account *a)
 
 /* One fit of the chain; *removed: 1 if it describes the window with the same number of
  * pulses, 0 if not or if nothing is known of the noise. */
-static enum separate_status fit_once(struct separate *s, long long from, size_t n,
-	int cut, struct account *a, int *removed)
+static enum separate_status fit_once(struct separate *s, struct account *a, int *removed)
 {
 	const struct joint_scene plain = s->scene;
-	size_t length = n + 2 * (size_t)pulse_length(s);
+	size_t n = a->n, length = n + 2 * (size_t)pulse_length(s);
 	double *work = s->common.work, *x[2] = { work, work + length };
 	double *y[2] = { work + 2 * length, work + 3 * length }, left[2] = { 1, 1 };
 	int m = a->m;
@@ -176,8 +177,8 @@ static enum separate_status fit_once(struct separate *s, long long from, size_t 
 	for (int c = 0; c < 2; c++) {
 		const double *noise;
 
-		memcpy(x[c], channels_at(s, from).at[c], n * sizeof(double));
-		status = noise_beside(s, from, n, c, a, y, work + 4 * length, &noise);
+		memcpy(x[c], channels_at(s, a->from).at[c], n * sizeof(double));
+		status = noise_beside(s, c, a, y, work + 4 * length, &noise);
 		if (status != SEPARATE_OK)
 			return status;
 		left[c] = noise ? s->common.left[c] : 1;
@@ -190,17 +191,16 @@ static enum separate_status fit_once(struct separate *s, long long from, size_t 
 	if (left[0] < 1)
 		s->scene.shape = s->common.sharp;
 	s->scene.gain *= left[0] / left[1];
-	status = separate_fit_window(s, (const double *const[]){ x[0], x[1] }, n, cut, a);
+	status = separate_fit_window(s, (const double *const[]){ x[0], x[1] }, a);
 	s->scene = plain;
 	*removed = a->m == m && separate_is_described(a);
 	return status;
 }
 
-enum separate_status separate_fit_without_common(
-	struct separate *s, long long from, size_t n, int cut, struct account *a)
+enum separate_status separate_fit_without_common(struct separate *s, struct account *a)
 {
 	const struct joint_scene plain = s->scene;
-	size_t length = n + 2 * (size_t)pulse_length(s);
+	size_t length = a->n + 2 * (size_t)pulse_length(s);
 	struct account better = *a;
 	enum separate_status status = SEPARATE_OK;
 	int removed = 1;
@@ -211,11 +211,11 @@ enum separate_status separate_fit_without_common(
 		return SEPARATE_MEMORY;
 	describe(s, a);
 	for (int k = 0; k < ROUNDS && removed && status == SEPARATE_OK; k++)
-		status = fit_once(s, from, n, cut, &better, &removed);
+		status = fit_once(s, &better, &removed);
 	if (status == SEPARATE_OK && removed)
 		*a = better;
 	else if (status == SEPARATE_OK)
-		status = separate_fit_window(s, channels_at(s, from).at, n, cut, a);
+		status = separate_fit_window(s, channels_at(s, a->from).at, a);
 	s->scene = plain;
 	return status;
 }

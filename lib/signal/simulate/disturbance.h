@@ -16,13 +16,6 @@
  *
  * Levels are uniform from 0.4 to 1.6 of the one given; event k of a kind depends on seed,
  * realisation, kind and k alone.
- *
- *	struct disturbances *d = disturbances_new(&par);
- *	struct disturbance e;
- *	while (disturbances_next(d, &e) && e.time[0] < end)
- *		for (...)
- *			x += disturbance_value(&e, sensor, t);
- *	disturbances_free(d);
  */
 #ifndef SIGNAL_DISTURBANCE_H
 #define SIGNAL_DISTURBANCE_H

@@ -8,12 +8,6 @@
  *
  * The numbers of particle i depend only on (seed, realisation, i) and on the arrival
  * before it.  SI units.
- *
- *	struct arrivals *a = arrivals_new(&par);
- *	struct passage p;
- *	for (uint64_t i = 0; arrivals_next(a, &p.time[0]); i++)
- *		passage_draw(&stream, i, &p);
- *	arrivals_free(a);
  */
 #ifndef SIGNAL_PASSAGE_H
 #define SIGNAL_PASSAGE_H

@@ -232,12 +232,6 @@ static void add_event(
 		}
 }
 
-static void add_events(struct scene *s, double *x, size_t n)
-{
-	for (size_t i = 0; i < s->events; i++)
-		add_event(s, &s->event[i], x, n);
-}
-
 /* Dropouts hide all else; what is past is forgotten. */
 static void drop_out(struct scene *s, double *x, size_t n)
 {
@@ -388,7 +382,8 @@ void scene_next(struct scene *s, double *x, size_t nframes)
 
 	memset(x, 0, channels(s) * nframes * sizeof *x);
 	add_pulses(s, x, nframes);
-	add_events(s, x, nframes);
+	for (size_t i = 0; i < s->events; i++)
+		add_event(s, &s->event[i], x, nframes);
 	for (int q = 0; q <= s->par.quadrature; q++) {
 		if (s->par.noise > 0)
 			add_noise(s, q, x, nframes);

@@ -6,14 +6,6 @@
  * quadrature with noise, drift and phases of lines of its own.  Each pulse touches its
  * own samples only, and memory holds only the particles now between the sensors; a stream
  * may last for days.
- *
- *	struct scene *scene = scene_new(&par);
- *	while (...) {
- *		scene_pass(scene, &passage);     // all that begin before the piece ends
- *		scene_disturb(scene, &event);    // likewise
- *		scene_next(scene, x, nframes);   // x[2 * frame + sensor], V
- *	}
- *	scene_free(scene);
  */
 #ifndef SIGNAL_SCENE_H
 #define SIGNAL_SCENE_H
@@ -67,7 +59,7 @@ enum num_status scene_disturb(struct scene *scene, const struct disturbance *eve
  * sensor 1 in phase and in quadrature, V.  Returns 1 if its pulse alone reaches the
  * saturation at either sensor.  Particles must come in order of time[0]. */
 int scene_receive(struct scene *scene, const struct passage *p, double peak[2]);
-/* The next frames of both sensors, or of four channels. */
+/* The next frames of both sensors, or of four channels, interleaved, V. */
 void scene_next(struct scene *scene, double *x, size_t nframes);
 
 /* Time after which the particles added so far have no effect, s. */

@@ -2,11 +2,6 @@
  *
  * Two independent Ornstein-Uhlenbeck processes of variance 1 and correlation exp(-t /
  * time), exact at knots and linear between them.  Times must not decrease.
- *
- *	struct wander w;
- *	wander_start(&w, normals, place, 10.0);
- *	wander_move(&w, t);
- *	use(wander_value(&w, 0), wander_value(&w, 1));
  */
 #ifndef SIGNAL_WANDER_H
 #define SIGNAL_WANDER_H

@@ -3,10 +3,10 @@
  *
  * A demodulator with two outputs gives each sensor a complex signal; its two components,
  * turned by a phase, are x, and v, in quadrature with it.  In x nearly all pulses are
- * positive, and the joint fit (joint.h) finds them there; in v
- * pulse k has any amplitude b_k, the same arrivals and the same length.  From the result
- * of the joint fit Gauss-Newton steps on all four channels lead to the least-squares
- * estimates of arrivals, a_k and b_k together, with their inverse Fisher matrix.
+ * positive, and the joint fit (joint.h) finds them there; in v pulse k has any amplitude
+ * b_k, the same arrivals and the same length.  From the result of the joint fit
+ * Gauss-Newton steps on all four channels lead to the least-squares estimates of
+ * arrivals, a_k and b_k together, with their inverse Fisher matrix.
  *
  * The noise of x and v of a sensor may differ in size and may be correlated.
  */
@@ -31,13 +31,13 @@ struct quadrature_pulse {
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n);
 
-/* After a joint fit of the m pulses to n samples of x, with chi2 per degree of freedom:
- * fits them to x and v, either in units of its noise.  *doubt: 1 if the residual of v
- * exceeds that of x and of noise. NUM_DOMAIN: the pulses cannot be separated; out is
- * undefined then. */
-enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,
+/* After a joint fit of the m pulses to x, or of others to the same samples, with chi2 per
+ * degree of freedom: fits them to x and v, either in units of its noise, and leaves no
+ * fit in joint.  *doubt: 1 if the residual of v exceeds that of x and of noise.
+ * NUM_DOMAIN: the pulses cannot be separated; out is undefined then. */
+enum num_status quadrature_fit(const struct quadrature *q, struct joint *joint,
 	const struct joint_scene *scene, const double *const x[2],
-	const double *const v[2], size_t n, const struct joint_pulse *pulse, int m,
-	double chi2, struct quadrature_pulse *out, int *doubt);
+	const double *const v[2], const struct joint_pulse *pulse, int m, double chi2,
+	struct quadrature_pulse *out, int *doubt);
 
 #endif
