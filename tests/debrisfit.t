@@ -147,6 +147,10 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v 'oblique' surrogate.tsv | grep -v '^#' >part.tsv
 fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+grep -v '^total\|^#' surrogate.tsv >part.tsv
+fails 'a surrogate without totals' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+{ grep -v '^#' surrogate.tsv; printf 'deviation\tsums\t0.001\n'; } >part.tsv
+fails 'a surrogate of an earlier program' 1 'fit it anew with debrisfit' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 fails 'a level beyond the scores of the fit' 1 'give intervals of level 0.9[0-9]* at most' \
 	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --interval 0.999 hidden.nrrd
 fails 'another table' 1 "no column 'kind'\|kind" debrisgen --yield 355MPa --surrogate full.tsv hidden.nrrd

@@ -592,13 +592,14 @@ static inline four beyond(four away, float half)
 	return (four)((four_bits)x & (x > 0));
 }
 
-/* At how many depths loads at distances act in proportion to them. */
-static inline four_bits flat_depths(four square)
+/* At how many depths loads at distances act in proportion to them; of careful sums none
+ * is taken to do so. */
+static inline four_bits flat_depths(const struct point_sum *s, four square)
 {
 	four_bits k = { 0 };
 	float z = (float)(FLAT * SHALLOWEST);
 
-	for (int i = 0; i < SHALLOW; i++, z *= 2)
+	for (int i = 0; i < SHALLOW && !s->careful; i++, z *= 2)
 		k -= square >= z * z;
 	return k;
 }
@@ -612,7 +613,7 @@ static void list_squares(struct point_sum *s, struct tile *t, int l, int x, int 
 	four away_x = t->x - q->x, away_y = t->y - q->y;
 	four u = beyond(away_x, t->half_x), v = beyond(away_y, t->half_y);
 	four square = u * u + v * v;
-	four_bits flat = s->careful ? (four_bits){ 0 } : flat_depths(square);
+	four_bits flat = flat_depths(s, square);
 
 	for (int i = 0; i < 4; i++) {
 		int ix = 2 * x + i % 2, iy = 2 * y + i / 2;
@@ -730,7 +731,7 @@ static void find_point(struct point_sum *s, int ix, int iy, int deep)
 	y = at->y - at->tile->y;
 	at->u = s->par.axis ? y : x;
 	at->v = s->par.axis ? x : y;
-	at->flat_points = s->careful ? 0 : flat_depths((four){ at->nearest })[0];
+	at->flat_points = flat_depths(s, (four){ at->nearest })[0];
 	if (!deep)
 		find_flat(s, at);
 }

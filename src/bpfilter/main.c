@@ -267,7 +267,7 @@ static void run(const char *path)
 {
 	struct signal_in *in = signal_open(path, NULL);
 	struct chain c = make_chain(*signal_format(in), signal_name(in));
-	double *x = xcalloc(c.step * c.channels, sizeof *x), frames = 0;
+	double *x = xcalloc(c.step * c.channels, sizeof *x), frames = 0, left_out;
 	size_t n, clean, tail = c.skip;
 
 	do {
@@ -290,8 +290,8 @@ static void run(const char *path)
 	stats_add("frames", frames);
 	stats_add("channels", (double)c.channels);
 	stats_add("points", (double)fir_transform(c.fir));
-	stats_add("blocks", fir_blocks(c.fir));
-	stats_add("blocks_left_out", fir_blocks_left_out(c.fir));
+	stats_add("blocks", fir_blocks(c.fir, &left_out));
+	stats_add("blocks_left_out", left_out);
 	lines_free(c.lines);
 	fir_free(c.fir);
 	free(c.piece);

@@ -58,8 +58,9 @@ static double *place_of(
 		return s->particle + s->particles++;
 	if (!strcmp(kind, "total") && s->totals < SURROGATE_SCORES)
 		return s->total + s->totals++;
-	die(EXIT_RUN, "%s: line %ld: '%s %s' is nothing of a surrogate", table_name(t),
-		table_line(t), kind, name);
+	die(EXIT_RUN,
+		"%s: line %ld: '%s %s' is nothing of a surrogate: fit it anew with debrisfit",
+		table_name(t), table_line(t), kind, name);
 }
 
 static void check_scores(const char *name, const char *kind, const double *score, int n)
@@ -90,7 +91,8 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(a);
 		rows++;
 	}
-	if (rows != 2L * SURROGATE_PROPERTIES + s->particles + s->totals)
+	if (rows != 2L * SURROGATE_PROPERTIES + s->particles + s->totals ||
+		s->particles == 0 || s->totals == 0)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);

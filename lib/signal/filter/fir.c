@@ -240,14 +240,10 @@ size_t fir_transform(const struct fir *fir)
 	return fir->points;
 }
 
-double fir_blocks(const struct fir *fir)
+double fir_blocks(const struct fir *fir, double *left_out)
 {
+	*left_out = fir->left_out;
 	return fir->blocks;
-}
-
-double fir_blocks_left_out(const struct fir *fir)
-{
-	return fir->left_out;
 }
 
 /* Overlap-save: the circular convolution is right from sample taps - 1 on. */

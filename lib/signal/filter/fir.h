@@ -62,8 +62,7 @@ size_t fir_block(const struct fir *fir);
 size_t fir_transform(const struct fir *fir);
 /* Blocks of one channel filtered so far, and those omitted because input and output
  * are zero. */
-double fir_blocks(const struct fir *fir);
-double fir_blocks_left_out(const struct fir *fir);
+double fir_blocks(const struct fir *fir, double *left_out);
 
 /* Filters nframes <= fir_block() frames in place.  The split of a stream into calls
  * changes rounding errors (1e-16 of the largest sample) and nothing else. */

@@ -59,11 +59,10 @@ struct joint {
 	int all[JOINT_PULSES_MAX]; /* 0, 1, 2, ...: the set of all pulses */
 	double *h;                 /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
-	int begin[NPAR];         /* first nonzero of each row */
 	double energy;           /* e^T e of both channels, ... */
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
-	double gradient[NPAR], diagonal[NPAR], move[NPAR];
+	double gradient[NPAR], move[NPAR];
 	double work;  /* samples of columns computed, since it is new */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };

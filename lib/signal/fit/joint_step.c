@@ -1,12 +1,11 @@
 /* joint_step.c - Levenberg-Marquardt fit of some of the pulses; see joint_state.h */
+#include "num/cholesky.h"
 #include "signal/fit/joint_state.h"
 #include <string.h>
 
 /* J_i^T J_k of two pulses, added to block. */
-static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
+static void add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
 {
-	int touch = 0;
-
 	for (int c = 0; c < 2; c++) {
 		const struct column *x = &j->col[i][c], *y = &j->col[k][c];
 		long first = x->first > y->first ? x->first : y->first;
@@ -17,7 +16,6 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 
 		if (end <= first)
 			continue;
-		touch = 1;
 		for (int u = 0; u < PAR; u++) {
 			xd[u] = x->d[u] + (first - x->first);
 			yd[u] = y->d[u] + (first - y->first);
@@ -27,7 +25,6 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
 				block[u][v] += part[u][v];
 	}
-	return touch;
 }
 
 /* Inner products of vector b of a channel's basis with the three columns of a pulse. */
@@ -53,7 +50,6 @@ static void make_normal(struct joint *j, const int *set, int m)
 
 	for (int x = 0; x < m; x++) {
 		int i = set[x];
-
 		double *g = j->gradient + PAR * x, part[PAR];
 
 		g[0] = g[1] = g[2] = 0;
@@ -73,17 +69,13 @@ static void make_normal(struct joint *j, const int *set, int m)
 				}
 			}
 		}
-		for (int u = 0; u < PAR; u++)
-			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
 		for (int y = 0; y <= x; y++) {
 			double block[PAR][PAR] = { { 0 } };
-			int touch = add_block(j, i, set[y], block);
 
+			add_block(j, i, set[y], block);
 			for (int u = 0; u < PAR; u++) {
 				int row = PAR * x + u;
 
-				if (touch && j->begin[row] > PAR * y)
-					j->begin[row] = PAR * y;
 				for (int v = 0; v < (x == y ? u + 1 : PAR); v++)
 					j->h[row * np + PAR * y + v] =
 						block[u][v] -
@@ -93,56 +85,24 @@ static void make_normal(struct joint *j, const int *set, int m)
 			}
 		}
 	}
-	for (int i = 0; i < np; i++)
-		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h) within the profile, the rows of a pulse together;
- * NUM_DOMAIN where not positive definite. */
-static enum num_status factorise(struct joint *j, int np, double lambda)
+/* Cholesky of h + lambda diag(h); NUM_DOMAIN where not positive definite. */
+static enum num_status factorise(struct joint *j, size_t np, double lambda)
 {
-	for (int first = 0; first < np; first += PAR) {
-		double *row = j->factor + (size_t)first * (size_t)np, part[PAR];
-		int begin = j->begin[first];
-
-		for (int k = begin; k < first; k++) {
-			const double *other = j->factor + (size_t)k * (size_t)np;
-			int from = begin > j->begin[k] ? begin : j->begin[k];
-			const double *rows[] = { row + from, row + np + from,
-				row + 2 * np + from };
-
-			dot3(other + from, rows, (size_t)(k - from), part);
-			for (int u = 0; u < PAR; u++)
-				row[u * np + k] =
-					(j->h[(first + u) * np + k] - part[u]) / other[k];
-		}
-		for (int i = first; i < first + PAR; i++, row += np) {
-			double pivot = j->h[i * np + i] + lambda * j->diagonal[i];
-
-			for (int k = first; k < i; k++) {
-				const double *other = row - (i - k) * np;
-
-				row[k] = (j->h[i * np + k] -
-						 dot(row + begin, other + begin,
-							 (size_t)(k - begin))) /
-					 other[k];
-			}
-			pivot -= dot(row + begin, row + begin, (size_t)(i - begin));
-			if (!(pivot > 1e-13 * j->diagonal[i]))
-				return NUM_DOMAIN;
-			row[i] = sqrt(pivot);
-		}
+	for (size_t i = 0; i < np; i++) {
+		memcpy(j->factor + i * np, j->h + i * np, (i + 1) * sizeof *j->h);
+		j->factor[i * np + i] += lambda * j->h[i * np + i];
 	}
-	return NUM_OK;
+	return cholesky_factor(j->factor, np, np, 1e-13);
 }
 
 void joint_reduce(const struct joint *j, int np, int start, double *x)
 {
 	for (int i = start; i < np; i++) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
-		int from = j->begin[i] > start ? j->begin[i] : start;
 
-		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
+		x[i] = (x[i] - dot(row + start, x + start, (size_t)(i - start))) / row[i];
 	}
 }
 
@@ -154,8 +114,7 @@ static void solve(const struct joint *j, int np, int start, double *x)
 		const double *row = j->factor + (size_t)i * (size_t)np;
 
 		x[i] /= row[i];
-		add_scaled(x + j->begin[i], -x[i], row + j->begin[i],
-			(size_t)(i - j->begin[i]));
+		add_scaled(x, -x[i], row, (size_t)i);
 	}
 }
 
@@ -287,7 +246,7 @@ double joint_fit_set(
 			make_normal(j, set, m);
 		fresh = 1;
 		j->result.steps++;
-		if (factorise(j, PAR * m, lambda) != NUM_OK) {
+		if (factorise(j, PAR * (size_t)m, lambda) != NUM_OK) {
 			lambda = lambda * 10 + 1e-3;
 			continue;
 		}
@@ -323,7 +282,7 @@ enum num_status joint_factorise(struct joint *j, const int *set, int m)
 	for (int x = 0; x < m; x++)
 		joint_make_columns(j, set[x]);
 	make_normal(j, set, m);
-	return factorise(j, PAR * m, 0);
+	return factorise(j, PAR * (size_t)m, 0);
 }
 
 void joint_fill_covariance(struct joint *j)
