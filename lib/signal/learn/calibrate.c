@@ -327,11 +327,44 @@ static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 								  : SEPARATE_NO_LAG;
 }
 
+/* SWAPPED if pulses describe the record with its channels exchanged: among few pulses two
+ * particles may look like one that passes sensor 2 first.  Otherwise learns as if none
+ * did. */
+static enum separate_status calibrate_swapped(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct calibration *c)
+{
+	struct calibrate_par known = *par;
+	enum separate_status status;
+	double before = c->work;
+
+	known.in_order = 1;
+	known.most -= before;
+	known.gain = 1 / par->gain;
+	known.hidden[0] = par->hidden[1];
+	known.hidden[1] = par->hidden[0];
+	status = calibrate_as(&known, x2, x1, n, c);
+	c->work += before;
+	if (status == SEPARATE_OK) {
+		status = learn_describes(c) ? SEPARATE_SWAPPED : SEPARATE_NO_LAG;
+		calibration_clear(c);
+	}
+	if (status == SEPARATE_SWAPPED || status == SEPARATE_MEMORY)
+		return status;
+	known = *par;
+	known.in_order = 1;
+	before = c->work;
+	known.most -= before;
+	status = calibrate(&known, x1, x2, n, c);
+	c->work += before;
+	return status;
+}
+
 enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
 	enum separate_status status = calibrate_as(par, x1, x2, n, c);
 
-	return status == SEPARATE_OPPOSITE ? calibrate_opposite(par, x1, x2, n, c)
-					   : status;
+	return status == SEPARATE_OPPOSITE  ? calibrate_opposite(par, x1, x2, n, c)
+	       : status == SEPARATE_SWAPPED ? calibrate_swapped(par, x1, x2, n, c)
+					    : status;
 }

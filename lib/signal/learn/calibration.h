@@ -27,7 +27,8 @@ struct calibrate_par {
 	size_t filter_taps;
 	/* Flags of the samples of each channel: 1 is not known; NULL: all are known. */
 	const unsigned char *hidden[2];
-	double most; /* samples of pulses that may be computed to learn the rest */
+	int in_order; /* 1: particles are known to pass sensor 1 first */
+	double most;  /* samples of pulses that may be computed to learn the rest */
 };
 
 /* Share of the transit time within which delays are searched in plug flow, whose

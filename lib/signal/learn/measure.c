@@ -382,14 +382,14 @@ static enum separate_status follows(const struct record *rec, const double *y1,
 	return check_lag(rec, y1, y2, &other);
 }
 
-/* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
- * than half of the power of the channels. */
+/* SWAPPED if particles seem to pass sensor 2 first.  Tested only if the lag found
+ * explains less than half of the power of the channels. */
 static enum separate_status find_reverse(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	enum separate_status status;
 
-	if (!isnan(par->lag) || c->correlation > 0.5)
+	if (!isnan(par->lag) || par->in_order || c->correlation > 0.5)
 		return SEPARATE_OK;
 	status = follows(rec, rec->y2, rec->y1, c);
 	return status == SEPARATE_OK       ? SEPARATE_SWAPPED
@@ -512,7 +512,7 @@ static enum separate_status find_template(const struct calibrate_par *par,
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
 		double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
-		struct template other = { .alone = found->alone };
+		struct template other = { .alone = found->alone, .white = found->white };
 
 		if (T < SHAPE_SHORTEST)
 			break;
@@ -662,6 +662,8 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		c->presumed_white = look->coloured;
 	}
 	look->found.alone = look->first && c->whitening.tap;
+	look->found.white = c->whitening.tap || !look->coloured ||
+			    measure_white_above(look, c->duration);
 	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))
 		status = find_template(par, &rec, &look->found, c);
 	if (status == SEPARATE_OK && look->first && look->coloured &&

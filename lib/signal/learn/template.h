@@ -29,7 +29,9 @@ struct template
 	double left;
 	int elsewhere; /* set by the caller: 1: found at a duration other than the guess
 			*/
-	int alone; /* set by the caller, kept: 1: no known pulse is to be tried instead */
+	/* Set by the caller, kept. */
+	int alone; /* 1: no known pulse is to be tried instead */
+	int white; /* 1: the noise is, above the band of the pulses */
 };
 
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess

@@ -383,6 +383,18 @@ static enum separate_status pass_over(struct separate *s, size_t n, int found)
 	return SEPARATE_OK;
 }
 
+/* Notes why nothing could be learned.  found: 0 if it is known to be from noise, which
+ * says nothing if there is more than noise elsewhere.  A kind of event that not all
+ * stretches show does not explain the record. */
+static void give_reason(struct separate *s, enum separate_status status, int found)
+{
+	if (found && s->unexplained && status != s->reason)
+		status = SEPARATE_HARD;
+	if (found || !s->unexplained)
+		s->reason = status;
+	s->unexplained |= found;
+}
+
 size_t separate_wants(const struct separate *s)
 {
 	size_t next = s->awaited > s->par.learn ? s->awaited : s->par.learn;
@@ -418,11 +430,10 @@ enum separate_status separate_learn(struct separate *s)
 			return status;
 		if (s->calibrated)
 			break;
-		s->reason = status;
 		if (look_for_bursts(s, lesser(s->buffer[0].n, s->par.learn), &found) !=
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
-		s->unexplained |= found;
+		give_reason(s, status, found);
 		if (s->buffer[0].n < s->par.learn)
 			break;
 		if (pass_over(s, half, found) != SEPARATE_OK)

@@ -56,6 +56,11 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	if (s->with_both)
 		tell_phase(s, (int)(p - s->pulse), from, out);
 	out->chi2 = chi2;
+	/* Beside its neighbours it may be none: two such pulses of opposite sign change
+	 * the width of one. */
+	if (verdict < SEPARATE_MISFIT &&
+		fabs(out->amplitude) < SIGMAS_SELDOM * out->amplitude_se)
+		verdict = SEPARATE_MISFIT;
 	out->verdict = verdict;
 	entry->evidence = (struct evidence){ .group = s->group,
 		.fits = verdict != SEPARATE_MISFIT,
