@@ -28,10 +28,11 @@ struct fit {
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n)
 {
-	double *sum = malloc((2 * n + 1) * sizeof *sum), *work = sum + n;
+	double *sum = malloc((2 * n + 1) * sizeof *sum), *work;
 
 	if (!sum)
 		return NUM_MEMORY;
+	work = sum + n;
 	for (int c = 0; c < 2; c++) {
 		double one = robust_noise(x[c], n, work),
 		       two = robust_noise(v[c], n, work), plus, minus, r;
