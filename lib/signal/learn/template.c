@@ -550,7 +550,8 @@ static enum num_status make_shape(
 	return t->shape ? NUM_OK : NUM_MEMORY;
 }
 
-/* Arrivals and amplitudes of the events for the shape. */
+/* Arrivals and amplitudes of the clear events for the shape: one that is not clear may be
+ * no pulse, and its delay any that is searched. */
 static void take_events(const struct search *s, double shift, struct template *t)
 {
 	double peak = 0, delay[TEMPLATE_EVENTS], median, least = 0, most = 0;
@@ -560,7 +561,7 @@ static void take_events(const struct search *s, double shift, struct template *t
 	for (int i = 0; i < s->count; i++) {
 		const struct event *e = &s->event[i];
 
-		if (!e->like)
+		if (!e->like || !is_clear(e))
 			continue;
 		t->t1[t->events] = e->t[0] + shift;
 		t->t2[t->events] = e->t[1] + shift;
