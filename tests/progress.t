@@ -39,7 +39,7 @@ share() {
 	script -qec "$3" "typescript.$shares" >/dev/null 2>&1 &
 }
 share 'work of known size reports its share and the time left' roughgen \
-	'roughgen --points 512 --length 1mm --sq 1um --corr 50um --count 200 | head -c 400000000 >/dev/null'
+	'roughgen --points 512 --length 1mm --sq 1um --corr 50um --count 200 | { sleep 1.5; cat; } >/dev/null'
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 3000; t++) print t "\t" 1 + t / 1000 }' >series.tsv
 share 'a series of known size has a share' aopf 'aopf series.tsv | { sleep 1.5; cat; } >/dev/null'
 share 'a record of known duration has a share' sensorsim \
