@@ -324,11 +324,11 @@ static void take_first(struct search *s, struct event *e)
 	}
 }
 
-/* 0 if few clear events are alike, or most as short as they differ from them: pulses
- * stand alone where events are shortest. */
-static int prevail(const struct search *s)
+/* How many clear events are alike, and how many are as short as they: pulses stand alone
+ * where events are shortest. */
+static int count_clear(const struct search *s, int *as_short)
 {
-	int clear = 0, rivals = 0;
+	int clear = 0;
 	double longest = 0;
 
 	for (int i = 0; i < s->count; i++)
@@ -336,15 +336,18 @@ static int prevail(const struct search *s)
 			clear += is_clear(&s->event[i]);
 			longest = fmax(longest, s->event[i].length);
 		}
+	*as_short = 0;
 	for (int i = 0; i < s->count; i++)
-		rivals += is_clear(&s->event[i]) && s->event[i].length <= longest;
-	return clear >= TEMPLATE_LEAST && 2 * clear >= rivals;
+		*as_short += is_clear(&s->event[i]) && s->event[i].length <= longest;
+	return clear;
 }
 
 /* Averages the events that equal the one given, then those that equal their mean, a few
- * times; 0 if these do not prevail. */
+ * times; 0 if few are clear, or most events as short as they differ from them. */
 static int refine(struct search *s, int best)
 {
+	int clear, as_short;
+
 	take_first(s, &s->event[best]);
 	for (int round = 0; round < ROUNDS; round++) {
 		coarsen_template(s);
@@ -361,7 +364,8 @@ static int refine(struct search *s, int best)
 					  (round ? 1 : 1 + e->a[0] * e->a[0]) +
 						  SIGMAS_NEVER / sqrt(2 * s->half + 1);
 		}
-		if (!prevail(s))
+		clear = count_clear(s, &as_short);
+		if (clear < TEMPLATE_LEAST || 2 * clear < as_short)
 			return 0;
 		average(s);
 	}
@@ -576,37 +580,44 @@ static void take_events(const struct search *s, double shift, struct template *t
 	t->duration /= 1 + median / s->transit;
 }
 
-static int count_alike(const struct search *s)
-{
-	int count = 0;
-
-	for (int i = 0; i < s->count; i++)
-		count += s->event[i].like;
-	return count;
-}
-
-/* Of events that are alike, the share that may differ in width: a quarter.  Where more
- * do, those left may hold pairs, too: with two beside four, 6 of 35 rows of a group of
+/* Events that are alike for each of another width that was dropped.  Where there are
+ * fewer, those left may hold pairs, too: with two beside four, 6 of 35 rows of a group of
  * Gaussian pulses are wrong; with one beside five and two beside seven none are. */
 enum { MIXED = 3 };
+
+/* Drops events of another width.  *found: 1 if those left have one width.  If any were
+ * dropped, all others as short have to be alike: where no pulse stands alone, pairs of
+ * nearly one distance may be. */
+static enum num_status make_one_width(struct search *s, int white, int *found)
+{
+	int dropped, others = 0, as_short, clear;
+
+	do {
+		if (check_widths(s, white, found, &dropped) != NUM_OK)
+			return NUM_MEMORY;
+		others += dropped;
+		clear = count_clear(s, &as_short);
+		if (others > 0 && (clear < TEMPLATE_LEAST || clear < MIXED * others ||
+					  clear + others < as_short)) {
+			*found = 0;
+			return NUM_OK;
+		}
+		if (dropped > 0)
+			average(s);
+	} while (dropped > 0);
+	return NUM_OK;
+}
 
 static enum num_status search_template(struct search *s, struct template *t)
 {
 	double shift = 0;
-	int best, reach, positive = 0, one, dropped, others = 0;
+	int best, reach, positive = 0, one;
 
 	find_events(s);
 	if (s->count < TEMPLATE_LEAST || (best = most_common(s)) < 0 || !refine(s, best))
 		return NUM_OK;
-	do {
-		if (check_widths(s, t->white, &one, &dropped) != NUM_OK)
-			return NUM_MEMORY;
-		others += dropped;
-		if (dropped > 0 && (!prevail(s) || MIXED * others > count_alike(s)))
-			return NUM_OK;
-		if (dropped > 0)
-			average(s);
-	} while (dropped > 0);
+	if (make_one_width(s, t->white, &one) != NUM_OK)
+		return NUM_MEMORY;
 	if (!one)
 		return NUM_OK;
 	for (int i = 0; i < s->count; i++)
