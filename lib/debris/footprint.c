@@ -324,7 +324,6 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 		double bend;
 
 		check(f, f->node[cell[at]], loss, n / (double)m);
-
 		depth[2] = depth[1];
 		depth[1] = depth[0];
 		depth[0] = loss.depth;

@@ -335,15 +335,13 @@ static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 {
 	struct calibrate_par known = *par;
 	enum separate_status status;
-	double before = c->work;
+	double before;
 
 	known.in_order = 1;
-	known.most -= before;
 	known.gain = 1 / par->gain;
 	known.hidden[0] = par->hidden[1];
 	known.hidden[1] = par->hidden[0];
 	status = calibrate_as(&known, x2, x1, n, c);
-	c->work += before;
 	if (status == SEPARATE_OK) {
 		status = learn_describes(c) ? SEPARATE_SWAPPED : SEPARATE_NO_LAG;
 		calibration_clear(c);

@@ -7,12 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of their energy that a variation of the width of pulses may have.  That of pairs,
- * whose distances vary up to what ALIKE allows, is 4/45 of it at (1 - 1/3)^2, 0.004.  In
- * 193 records of random instruments, half of them groups, it is up to 3e-4 of single
- * pulses in drift, lines or clipped, and 4e-4 to 5e-3 in groups. */
-static const double SAME_WIDTH = 4e-4;
-
 /* Points of a duration on the coarse grid where events are compared. */
 enum { COARSE = 32, ROUNDS = 4 };
 
@@ -22,6 +16,13 @@ static const double SIDE = 2;
 /* Share of its energy in which an event may differ from another of the same kind, because
  * of its velocity and the coarse grid. */
 static const double ALIKE = 0.02;
+
+/* Share of their energy that variations of the width of single pulses may take: a tenth
+ * of what those of pairs take.  With distances of pairs uniform up to that at which the
+ * change takes ALIKE, it varies with the square of the distance, whose variance is a
+ * fifth of its greatest deviation squared.  In 193 records of random instruments single
+ * pulses in drift, lines or clipped take up to 3e-4, groups 4e-4 to 5e-3. */
+static const double SAME_WIDTH = 4e-4;
 
 /* Power of an event, over that of the noise, from which on it is not alike because of its
  * noise.  With 1 a drifting baseline is taken for a pulse in a group of turbulent flow, 6
@@ -312,16 +313,16 @@ static void coarsen_template(struct search *s)
 /* Takes the template from one event, in its own units. */
 static void take_first(struct search *s, struct event *e)
 {
-	double stretch = 1, at = floor(e->centre);
+	double at = floor(e->centre), stretch = 1;
 
-	for (int again = 0; again < 2; again++) {
-		for (int k = -s->half; k <= s->half; k++)
-			s->p[k + s->half] = between(s->y[0], s->n, at + k * stretch);
-		coarsen_template(s);
-		measure_event(s, e, 0, at, s->T);
-		measure_event(s, e, 1, e->t[0], s->reach);
-		stretch = 1 + (e->t[1] - e->t[0]) / s->transit;
-	}
+	for (int k = -s->half; k <= s->half; k++)
+		s->p[k + s->half] = s->y[0][(long)at + k];
+	coarsen_template(s);
+	measure_event(s, e, 0, at, s->T);
+	measure_event(s, e, 1, e->t[0], s->reach);
+	stretch += (e->t[1] - e->t[0]) / s->transit;
+	for (int k = -s->half; k <= s->half; k++)
+		s->p[k + s->half] = between(s->y[0], s->n, at + k * stretch);
 }
 
 /* How many clear events are alike, and how many are as short as they: pulses stand alone
@@ -404,7 +405,7 @@ static enum num_status check_widths(struct search *s, int white, int *one, int *
 	enum { BASE = 4 };
 	size_t n = 2 * (size_t)s->half + 1;
 	double *work = malloc((BASE + 2) * n * sizeof *work);
-	double *d, *r, sum = 0, more = 0, off[TEMPLATE_EVENTS];
+	double *d, *r, share, sum = 0, more = 0, off[TEMPLATE_EVENTS];
 	int count = 0;
 
 	*dropped = 0;
@@ -422,9 +423,10 @@ static enum num_status check_widths(struct search *s, int white, int *one, int *
 		work[3 * n + i] = slope;
 		d[i] = k * slope;
 	}
+	share = white ? SAME_WIDTH * dot(s->p, s->p, n) : 0;
 	orthogonalise(work, BASE, d, n);
 	for (int i = 0; i < s->count; i++) {
-		struct event *e = &s->event[i];
+		const struct event *e = &s->event[i];
 		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit, z = 0, a2 = 0;
 
 		if (!e->like)
@@ -436,11 +438,8 @@ static enum num_status check_widths(struct search *s, int white, int *one, int *
 			z += e->a[c] * dot(r, d, n);
 			a2 += e->a[c] * e->a[c];
 		}
-		off[i] = z * z / a2 - SIGMAS_NEVER * SIGMAS_NEVER;
-		if (white) {
-			off[i] -= SAME_WIDTH * a2 * dot(s->p, s->p, n);
-			more += SAME_WIDTH * a2 * dot(s->p, s->p, n);
-		}
+		off[i] = z * z / a2 - SIGMAS_NEVER * SIGMAS_NEVER - share * a2;
+		more += share * a2;
 		sum += z * z / a2;
 		count++;
 	}
@@ -580,9 +579,10 @@ static void take_events(const struct search *s, double shift, struct template *t
 	t->duration /= 1 + median / s->transit;
 }
 
-/* Events that are alike for each of another width that was dropped.  Where there are
- * fewer, those left may hold pairs, too: with two beside four, 6 of 35 rows of a group of
- * Gaussian pulses are wrong; with one beside five and two beside seven none are. */
+/* Clear events that have to be alike for each one that was dropped.  Where there are
+ * fewer, those left may hold pairs, too: with two dropped beside four, 6 of 35 rows of a
+ * group of Gaussian pulses are wrong; with one beside five and two beside seven none are.
+ */
 enum { MIXED = 3 };
 
 /* Drops events of another width.  *found: 1 if those left have one width.  If any were
