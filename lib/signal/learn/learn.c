@@ -138,27 +138,44 @@ static void take_template(struct calibration *c, struct template *found)
 	c->measured = 1;
 }
 
-/* The best description of some clear examples so far. */
+/* A description of some clear examples: by a pulse of sensor.h or that of the single
+ * event of this number; signs: 1 if it may be of either sign. */
 struct guess {
-	int pulse;
+	int pulse, single, signs;
 	double duration, gain, penalised, chi2;
 };
+
+/* Where the pulse is from: events that are alike, sensor.h, or a single event. */
+enum { TAKEN, KNOWN, SINGLE };
 
 /* Price, over the best so far, above which a guess is not worth tuning.  Of pairs within
  * 6 to 10 ms (pulses of 10 ms, eighteen records) 3 misses the right shape in one, whose
  * first guess of the duration is wrong by a fifth, and 5 in none. */
 static const double FAR_OFF = 5;
 
-/* Tries one shape from a duration on; it has to be better by the factor need. */
-static enum separate_status try_shape(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
-	double duration, double need, struct calibration *c, struct guess *best)
+/* Takes the pulse of a single event for the shape.  SEPARATE_HARD if there is none. */
+static enum separate_status set_single(const struct examples *ex, const double *y1,
+	const double *y2, size_t n, const struct guess *guess, struct calibration *c)
 {
-	double chi2;
+	struct template one = { 0 };
+	double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration);
 
-	c->duration = duration;
-	if (learn_set_shape(c, pulse) != NUM_OK)
+	if (template_single(&one, y1, y2, ex->hidden, n, c->duration, c->transit, reach,
+		    guess->single) != NUM_OK)
 		return SEPARATE_MEMORY;
+	if (!one.shape)
+		return SEPARATE_HARD;
+	take_template(c, &one);
+	return SEPARATE_OK;
+}
+
+/* Fits the shape of c to some examples; it has to be better than the best one by the
+ * factor need. */
+static enum separate_status try_shape(const struct calibrate_par *par,
+	struct examples *ex, const double *y1, const double *y2, size_t n,
+	struct guess guess, double need, struct calibration *c, struct guess *best)
+{
+	ex->signs = guess.signs;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
 		return SEPARATE_OK;
@@ -167,11 +184,26 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	tune(par, ex, 0.1, 3);
-	chi2 = examples_fit(ex, 0.003);
-	if (ex->penalised < need * best->penalised)
-		*best = (struct guess){ pulse, ex->scene.duration,
-			ex->scene.gain * c->noise[1] / c->noise[0], ex->penalised, chi2 };
+	guess.chi2 = examples_fit(ex, 0.003);
+	guess.penalised = ex->penalised;
+	guess.duration = ex->scene.duration;
+	guess.gain = ex->scene.gain * c->noise[1] / c->noise[0];
+	if (guess.penalised < need * best->penalised)
+		*best = guess;
 	return SEPARATE_OK;
+}
+
+/* Tries a pulse of sensor.h from a duration on. */
+static enum separate_status try_known(const struct calibrate_par *par,
+	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
+	double duration, double need, struct calibration *c, struct guess *best)
+{
+	const struct guess guess = { .pulse = pulse };
+
+	c->duration = duration;
+	if (learn_set_shape(c, pulse) != NUM_OK)
+		return SEPARATE_MEMORY;
+	return try_shape(par, ex, y1, y2, n, guess, need, c, best);
 }
 
 /* Takes shape and duration from the spectrum of a long record in which few pulses stand
@@ -202,7 +234,7 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 	const struct template *hint, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.7, 1.4 };
-	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
+	struct guess best = { c->pulse, 0, 0, c->duration, c->gain, INFINITY, INFINITY };
 	enum separate_status status = SEPARATE_OK;
 
 	/* A drifting baseline looks like a crowd of a few long pulses: a spectrum is
@@ -215,7 +247,7 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 			return learn_crowd(par, ex, y1, y2, n, c);
 	}
 	if (hint && hint->events && hint->elsewhere)
-		status = try_shape(
+		status = try_known(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
 		for (int p = 0; p < PULSE_SHAPES; p++) {
@@ -230,13 +262,43 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
-				status = try_shape(par, ex, y1, y2, n, p, duration,
+				status = try_known(par, ex, y1, y2, n, p, duration,
 					k ? 0.5 : 1, c, &best);
 		}
+	ex->signs = best.signs;
 	c->duration = best.duration;
 	c->gain = best.gain;
 	if (status == SEPARATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
 		status = SEPARATE_MEMORY;
+	return status;
+}
+
+/* Takes the pulse of that single event, of the clearest few, which describes some clear
+ * examples best, all of one sign or of both.  SEPARATE_HARD if there is none. */
+static enum separate_status learn_single(const struct calibrate_par *par,
+	struct examples *ex, const double *y1, const double *y2, size_t n,
+	struct calibration *c)
+{
+	enum { SINGLES = 3 };
+	struct guess best = { .single = -1, .penalised = INFINITY };
+	const double duration = c->duration;
+	enum separate_status status = SEPARATE_OK;
+
+	for (int k = 0; k < 2 * SINGLES && status == SEPARATE_OK; k++) {
+		const struct guess guess = { .single = k / 2, .signs = k % 2 };
+
+		c->duration = duration;
+		status = set_single(ex, y1, y2, n, &guess, c);
+		if (status == SEPARATE_OK)
+			status = try_shape(par, ex, y1, y2, n, guess, 1, c, &best);
+	}
+	if (status == SEPARATE_MEMORY || best.single < 0)
+		return status == SEPARATE_OK ? SEPARATE_HARD : status;
+	c->duration = duration;
+	status = set_single(ex, y1, y2, n, &best, c);
+	ex->signs = best.signs;
+	c->duration = best.duration;
+	c->gain = best.gain;
 	return status;
 }
 
@@ -355,9 +417,9 @@ static void hide_spikes(struct examples *ex, const double *y1, const double *y2,
 	}
 }
 
-/* Learns by the pulse taken from the record, or else by those of sensor.h. */
+/* Learns by pulses of one source. */
 static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct template *found,
+	const double *y2, size_t n, double low, struct template *found, int source,
 	struct calibration *c)
 {
 	struct examples ex = { .joint = joint_new(),
@@ -373,10 +435,11 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	learn_hidden(par, c, ex.hidden);
 	if (flags)
 		hide_spikes(&ex, y1, y2, n, c->duration, flags);
-	if (found && found->shape)
+	if (source == TAKEN)
 		take_template(c, found);
 	else if (status == SEPARATE_OK)
-		status = learn_shape(par, &ex, y1, y2, n, low, found, c);
+		status = source == KNOWN ? learn_shape(par, &ex, y1, y2, n, low, found, c)
+					 : learn_single(par, &ex, y1, y2, n, c);
 	if (status == SEPARATE_OK) {
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
@@ -400,28 +463,55 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	return status;
 }
 
-/* Shape, duration, gain and range of delays by joint fits.  A pulse taken from groups of
- * nearly equal composition does not describe their pulses; the known shapes are tried
- * then. */
+/* 1 if what was learned needs no other attempt.  A shape corrected until no example is
+ * one pulse may be another one's half. */
+static int is_enough(int taken, const struct calibration *c)
+{
+	return learn_describes(c) && (taken || !c->corrected || c->isolated > 0);
+}
+
+/* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with
+ * the first that describes the examples: by a pulse taken from the record, which groups
+ * of nearly equal composition mislead, by those of sensor.h, with half of the work that
+ * is left, and by those of single events. */
 enum separate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c)
 {
-	struct calibration known = *c;
-	int taken = found && found->shape;
-	enum separate_status status = learn_by(par, y1, y2, n, low, found, c);
+	const struct calibration first = *c;
+	const int taken = found && found->shape;
+	const int any = par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
+	const int last = taken && found->alone               ? TAKEN
+			 : found && any && !c->whitening.tap ? SINGLE
+							     : KNOWN;
+	enum separate_status status = SEPARATE_HARD;
 
-	if (!taken || status != SEPARATE_OK || learn_describes(c) || found->alone)
-		return status;
-	known.shape = NULL;
-	known.work = c->work;
-	status = learn_by(par, y1, y2, n, low, NULL, &known);
-	if (status == SEPARATE_OK && known.penalised < c->penalised) {
-		shape_free(c->shape);
-		*c = known;
-	} else {
-		shape_free(known.shape);
-		c->work = known.work;
+	for (int k = taken ? TAKEN : KNOWN; k <= last; k++) {
+		struct calibration other = first;
+		struct calibrate_par part = *par;
+		enum separate_status now;
+
+		other.shape = NULL;
+		other.work = c->work;
+		if (k == KNOWN && last == SINGLE)
+			part.most = 0.5 * (c->work + par->most);
+		now = learn_by(&part, y1, y2, n, low, k == KNOWN && taken ? NULL : found,
+			k, &other);
+		c->work = other.work;
+		if (now != SEPARATE_OK && now != SEPARATE_HARD) {
+			shape_free(other.shape);
+			return now;
+		}
+		if (now == SEPARATE_OK &&
+			(status != SEPARATE_OK || other.penalised < c->penalised)) {
+			shape_free(c->shape);
+			*c = other;
+			status = now;
+		} else {
+			shape_free(other.shape);
+		}
+		if (status == SEPARATE_OK && is_enough(k == TAKEN, c))
+			break;
 	}
 	return status;
 }

@@ -608,15 +608,49 @@ static enum num_status make_one_width(struct search *s, int white, int *found)
 	return NUM_OK;
 }
 
-static enum num_status search_template(struct search *s, struct template *t)
+/* Takes the template from one clear event, in the order of merit, by both channels; 0 if
+ * there are not so many. */
+static int take_single(struct search *s, int number)
 {
-	double shift = 0;
-	int best, reach, positive = 0, one;
+	struct event *e = s->event;
 
-	find_events(s);
+	for (; e < s->event + s->count; e++)
+		if (is_clear(e) && number-- == 0)
+			break;
+	if (e == s->event + s->count)
+		return 0;
+	take_first(s, e);
+	if (!(e->a[0] * e->a[1] > 0))
+		return 0;
+	e->like = 1;
+	average(s);
+	coarsen_template(s);
+	for (int c = 0; c < 2; c++)
+		measure_event(s, e, c, e->t[c], 0);
+	average(s);
+	return 1;
+}
+
+/* *one: 1 if events were found that are alike. */
+static enum num_status take_common(struct search *s, int white, int *one)
+{
+	int best;
+
+	*one = 0;
 	if (s->count < TEMPLATE_LEAST || (best = most_common(s)) < 0 || !refine(s, best))
 		return NUM_OK;
-	if (make_one_width(s, t->white, &one) != NUM_OK)
+	return make_one_width(s, white, one);
+}
+
+static enum num_status search_template(struct search *s, int single, struct template *t)
+{
+	double shift = 0;
+	int reach, positive = 0, one;
+
+	find_events(s);
+	if (single >= 0)
+		one = take_single(s, single);
+	else if (take_common(s, t->white, &one) != NUM_OK)
 		return NUM_MEMORY;
 	if (!one)
 		return NUM_OK;
@@ -641,9 +675,10 @@ static enum num_status search_template(struct search *s, struct template *t)
 	return NUM_OK;
 }
 
-enum num_status template_find(struct template *t, const double *y1, const double *y2,
+/* As the functions of template.h; single -1: by events that are alike. */
+static enum num_status find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double reach)
+	double reach, int single)
 {
 	struct search s = { .y = { y1, y2 },
 		.hidden = { hidden[0], hidden[1] },
@@ -670,9 +705,23 @@ enum num_status template_find(struct template *t, const double *y1, const double
 	s.coarse = s.p + length;
 	for (int c = 0; c < 2; c++)
 		coarsen(s.y[c], n, s.q, s.z[c]);
-	status = search_template(&s, t);
+	status = search_template(&s, single, t);
 	free(s.z[0]);
 	return status;
+}
+
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
+	const unsigned char *const hidden[2], size_t n, double duration, double transit,
+	double reach)
+{
+	return find(t, y1, y2, hidden, n, duration, transit, reach, -1);
+}
+
+enum num_status template_single(struct template *t, const double *y1, const double *y2,
+	const unsigned char *const hidden[2], size_t n, double duration, double transit,
+	double reach, int number)
+{
+	return find(t, y1, y2, hidden, n, duration, transit, reach, number);
 }
 
 void template_clear(struct template *t)

@@ -40,6 +40,11 @@ struct template
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
 	double reach);
+/* The same by a single clear event, of this number in the order of their size and
+ * shortness: it has its noise, and may be more than one pulse. */
+enum num_status template_single(struct template *t, const double *y1, const double *y2,
+	const unsigned char *const hidden[2], size_t n, double duration, double transit,
+	double reach, int number);
 void template_clear(struct template *t);
 
 /* The share of the energy that the most similar pulse of sensor.h leaves after symmetric
