@@ -62,8 +62,8 @@ static void test_grey_series(void)
  * errors are those of the grey model itself. */
 static void test_orders(void)
 {
-	struct order_par par = { ORDER_WINDOW, 30, 20, 0.03, 0, 0 };
-	struct order *o = order_new(&par), *all, *ranged;
+	struct order_par par = { ORDER_WINDOW, 30, 20, 0.03 };
+	struct order *o = order_new(&par);
 	struct draw *d = draw_new(4, 0, RNG_NOISE);
 	struct grey g = { 0 };
 	double y[200];
@@ -78,22 +78,7 @@ static void test_orders(void)
 		"the forecast is that of the chosen order");
 	ok(order_chosen(o) > 10, "white noise leads to a high order: %d",
 		order_chosen(o));
-	par.rule = ORDER_ALL;
-	all = order_new(&par);
-	par.range_low = 4;
-	par.range_high = 8;
-	ranged = order_new(&par);
-	for (int k = 0; k < 200; k++) {
-		order_add(all, y[k], 1);
-		order_add(ranged, y[k], 1);
-	}
-	ok(order_counts(ranged).skipped > 0 &&
-			order_counts(ranged).tried + order_counts(ranged).skipped ==
-				order_counts(all).tried,
-		"the orders that the range leaves out are counted");
 	order_free(o);
-	order_free(all);
-	order_free(ranged);
 	draw_free(d);
 }
 
@@ -557,9 +542,8 @@ static void test_bursts(void)
 
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
-static const struct adaptive_par default_filter = { .filter = { 300, 0,
-							    RESAMPLE_SYSTEMATIC, 0.5, 0 },
-	.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
+static const struct adaptive_par default_filter = { .filter = { 300, 0, 0.5 },
+	.order = { ORDER_WINDOW, 60, 50, 0.03 },
 	.process = NAN,
 	.noise = NAN,
 	.seed = 1 };

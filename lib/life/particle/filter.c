@@ -1,7 +1,6 @@
 /* filter.c - see filter.h */
 #include "life/particle/filter.h"
 #include "num/lanes.h"
-#include "num/student.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -197,28 +196,18 @@ struct filter_now filter_now(const struct filter *f)
 	return f->now;
 }
 
-/* Of two states, without its constant. */
-static inline lanes log_likelihood(lanes z, double nu)
-{
-	return nu > 0 ? -0.5 * (nu + 1) *
-				(lanes){ log1p(z[0] * z[0] / nu),
-					log1p(z[1] * z[1] / nu) }
-		      : -0.5 * z * z;
-}
-
 /* Logarithm of the largest weight after the observation y, rounded as in weigh(): far
  * from y it could otherwise differ from all of them by more than FAR. */
 static double best(const struct filter *f, double y, double noise)
 {
 	const double *x = states_of(f, 0);
-	double top = -INFINITY, nu = f->par.freedom, scale = 1 / noise;
+	double top = -INFINITY, scale = 1 / noise;
 
 	for (size_t i = 0; i < f->par.particles; i++) {
-		double l = log_likelihood(lanes_all((y - x[i]) * scale), nu)[0],
-		       before = log(f->weight[i]);
+		double z = (y - x[i]) * scale, before = log(f->weight[i]);
 
 		if (before > -FAR)
-			top = fmax(top, before + l);
+			top = fmax(top, before - 0.5 * z * z);
 	}
 	return top;
 }
@@ -227,15 +216,14 @@ static double best(const struct filter *f, double y, double noise)
 static double weigh(struct filter *f, double y, double noise, double top)
 {
 	const double *x = states_of(f, 0);
-	double nu = f->par.freedom, scale = 1 / noise;
+	double scale = 1 / noise;
 	size_t n = f->par.particles;
 	lanes sums[3] = { { 0 } };
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes l =
-			log_likelihood((y - lanes_load(x + i, width)) * scale, nu) - top;
-		lanes w = lanes_load(f->weight + i, width) *
+		lanes z = (y - lanes_load(x + i, width)) * scale, l = -0.5 * z * z - top,
+		      w = lanes_load(f->weight + i, width) *
 			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
 
 		lanes_store(f->next + i, w, width);
@@ -252,16 +240,6 @@ static double weigh(struct filter *f, double y, double noise, double top)
 	f->sum = sums[0][0] + sums[0][1];
 	f->now.mean = (sums[2][0] + sums[2][1]) / f->sum;
 	return sums[1][0] + sums[1][1];
-}
-
-/* log of the constant of the likelihood */
-static double log_constant(const struct filter *f, double noise)
-{
-	double nu = f->par.freedom;
-
-	if (nu > 0)
-		return student_log_constant(nu) - log(noise);
-	return -0.5 * log(2 * M_PI) - log(noise);
 }
 
 /* Renumbers the distinct values of n ascending ancestors from 0 on, and lists the old
@@ -316,10 +294,10 @@ double filter_update(struct filter *f, double y, double noise)
 	f->next = spent;
 	f->now.ess = sum * sum / squares;
 	if (f->par.share >= 1 || f->now.ess < f->par.share * (double)n) {
-		resample(f->par.scheme, f->draw, f->weight, sum, n, ancestors_of(f, 0));
+		resample(f->draw, f->weight, sum, n, ancestors_of(f, 0));
 		weigh_equally(f);
 		prune(f);
 		f->now.resamplings++;
 	}
-	return log_constant(f, noise) + top + log(sum / before);
+	return top + log(sum / before) - log(noise) - 0.5 * log(2 * M_PI);
 }

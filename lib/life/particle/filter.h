@@ -26,9 +26,7 @@
 struct filter_par {
 	size_t particles; /* N >= 1 */
 	int depth;        /* states remembered, >= 1 */
-	enum resampling scheme;
-	double share;   /* resample when ESS < share N; 1: always */
-	double freedom; /* of Student-t observation noise; 0: Gaussian */
+	double share;     /* resample when ESS < share N; 1: always */
 };
 
 struct filter;
