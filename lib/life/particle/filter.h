@@ -21,7 +21,9 @@
 #ifndef LIFE_FILTER_H
 #define LIFE_FILTER_H
 
-#include "life/particle/resample.h"
+#include "life/particle/draw.h"
+#include <stddef.h>
+#include <stdint.h>
 
 struct filter_par {
 	size_t particles; /* N >= 1 */
@@ -68,5 +70,12 @@ struct filter_now {
 	unsigned long resamplings; /* so far */
 };
 struct filter_now filter_now(const struct filter *f);
+
+/* Systematic resampling (Douc, Cappe, Moulines, "Comparison of resampling schemes for
+ * particle filtering", ISPA 2005): fills ancestor[n] in ascending order with the floor or
+ * the ceiling of n w[i] copies of particle i, n w[i] on average, from weight[n] >= 0 with
+ * the given sum > 0. */
+void resample(struct draw *draw, const double *weight, double sum, size_t n,
+	uint32_t *ancestor);
 
 #endif

@@ -49,8 +49,8 @@ struct partition {
 	double fragment_area, area, zone;
 	long first_step;
 	int sizes;
-	struct class class[PARTITION_CLASSES_MAX]; /* in order of pressure once closed */
-	int order[PARTITION_CLASSES_MAX];          /* order[place] = the caller's index */
+	struct class class[PARTITION_CLASSES_MAX];
+	int order[PARTITION_CLASSES_MAX]; /* classes by pressure once closed */
 	int nclasses, culprit;
 	long culprit_realisation;
 	long steps;
@@ -239,18 +239,14 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	return PARTITION_OK;
 }
 
-/* Sorts the classes by pressure, keeping the caller's numbers in order[]. */
 static void sort_classes(struct partition *p)
 {
 	for (int i = 0; i < p->nclasses; i++) {
-		struct class moved = p->class[i];
 		int k = i;
 
-		for (; k > 0 && p->class[k - 1].pressure > moved.pressure; k--) {
-			p->class[k] = p->class[k - 1];
+		for (; k > 0 && p->class[p->order[k - 1]].pressure > p->class[i].pressure;
+			k--)
 			p->order[k] = p->order[k - 1];
-		}
-		p->class[k] = moved;
 		p->order[k] = i;
 	}
 }
@@ -276,7 +272,7 @@ static enum partition_status share_area(struct partition *p, double transition)
 	}
 	if (!given) {
 		p->zone = transition * p->area;
-		p->class[0].area = p->class[p->nclasses - 1].area =
+		p->class[p->order[0]].area = p->class[p->order[p->nclasses - 1]].area =
 			(p->area - p->zone) / 2;
 		return PARTITION_OK;
 	}
@@ -308,9 +304,9 @@ enum partition_status partition_close(
 			return status;
 	}
 	sort_classes(p);
-	for (int c = 1; c < p->nclasses; c++) {
-		p->culprit = p->order[c];
-		if (p->class[c].pressure == p->class[c - 1].pressure)
+	for (int k = 1; k < p->nclasses; k++) {
+		p->culprit = p->order[k];
+		if (p->class[p->culprit].pressure == p->class[p->order[k - 1]].pressure)
 			return PARTITION_PRESSURE;
 	}
 	return share_area(p, transition);
@@ -328,12 +324,8 @@ long partition_realisation(const struct partition *p)
 
 double partition_count(const struct partition *p, int class, double *mean)
 {
-	int place = 0;
-
-	while (p->order[place] != class)
-		place++;
-	*mean = p->class[place].all.mean;
-	return p->class[place].realisations;
+	*mean = p->class[class].all.mean;
+	return p->class[class].realisations;
 }
 
 double partition_power_mean(double p0, double y0, double p1, double y1)
@@ -366,14 +358,18 @@ static void add_area(struct partition_wear *wear, const struct moments *m, doubl
 /* Mean over the linear zone of a quantity known at each class. */
 static double zone_mean(const struct partition *p, const double *y)
 {
-	double sum = 0;
-	int n = p->nclasses;
+	const int *at = p->order;
+	int last = p->nclasses - 1;
+	double sum = 0, span = p->class[at[last]].pressure - p->class[at[0]].pressure;
 
-	for (int c = 0; c + 1 < n; c++)
-		sum += (p->class[c + 1].pressure - p->class[c].pressure) *
-		       partition_power_mean(p->class[c].pressure, y[c],
-			       p->class[c + 1].pressure, y[c + 1]);
-	return sum / (p->class[n - 1].pressure - p->class[0].pressure);
+	for (int k = 0; k < last; k++) {
+		double low = p->class[at[k]].pressure,
+		       high = p->class[at[k + 1]].pressure;
+
+		sum += (high - low) *
+		       partition_power_mean(low, y[at[k]], high, y[at[k + 1]]);
+	}
+	return sum / span;
 }
 
 /* Component from the present moments of the classes. */
