@@ -181,6 +181,12 @@ aopf --order 7 rise.tsv | column order /dev/stdin | tail -1 >o
 is "a fixed order is kept" "$(cat o)" 7
 ok "--order insample is accepted" aopf --order insample rise.tsv
 
+# A bad first value has the threshold approached from above.
+seq 0 60 | awk '{ print $1 "\t" 5 + ($1 < 1 ? 10 : $1 / 60) }' >start.tsv
+fails "a bad first value" 3 'fails after value 1 if .* from above.*--direction up' \
+	aopf -y 7 --lives-only start.tsv
+ok "the direction is given" aopf -y 7 --direction up --lives-only start.tsv
+
 # The error of the best order can never fall by all of itself.
 for g in 0 0.3 1; do
 	aopf --hysteresis $g --stats changes.stats rise.tsv >/dev/null
