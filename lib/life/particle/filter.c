@@ -5,20 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
+/* Largest distance of a log-likelihood from the largest at which exp() is not 0; a
  * particle farther below has weight 0. */
 static const double FAR = 700;
-/* Sum of the weights below which they are computed as logarithms.  A particle that has
- * underflowed by then has less than 1e-200 of the sum. */
-static const double FADED = 1e-100;
 
 struct filter {
 	struct filter_par par;
 	struct draw *draw;
-	double *x;             /* [depth][N], a ring */
-	uint32_t *ancestor;    /* [depth][N]: of each state of the next step */
-	size_t *count;         /* [depth]: states that still have descendants */
-	double *weight, *next; /* next: those after */
+	double *x;          /* [depth][N], a ring */
+	uint32_t *ancestor; /* [depth][N]: of each state of the next step */
+	size_t *count;      /* [depth]: states that still have descendants */
+	double *weight;
 	uint32_t *kept;
 	int newest, filled;
 	double sum; /* of weight */
@@ -38,9 +35,8 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 	f->ancestor = calloc(all, sizeof *f->ancestor);
 	f->count = calloc((size_t)par->depth, sizeof *f->count);
 	f->weight = calloc(n, sizeof *f->weight);
-	f->next = calloc(n, sizeof *f->next);
 	f->kept = calloc(n, sizeof *f->kept);
-	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->next || !f->kept) {
+	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->kept) {
 		filter_free(f);
 		return NULL;
 	}
@@ -72,7 +68,6 @@ void filter_free(struct filter *f)
 	free(f->ancestor);
 	free(f->count);
 	free(f->weight);
-	free(f->next);
 	free(f->kept);
 	free(f);
 }
@@ -196,42 +191,44 @@ struct filter_now filter_now(const struct filter *f)
 	return f->now;
 }
 
-/* Logarithm of the largest weight after the observation y, rounded as in weigh(): far
- * from y it could otherwise differ from all of them by more than FAR. */
-static double best(const struct filter *f, double y, double noise)
+/* The least distance of a particle that has a weight from y, in standard deviations. */
+static double nearest(const struct filter *f, double y, double noise)
 {
 	const double *x = states_of(f, 0);
-	double top = -INFINITY, scale = 1 / noise;
+	lanes least = lanes_all(INFINITY);
 
-	for (size_t i = 0; i < f->par.particles; i++) {
-		double z = (y - x[i]) * scale, before = log(f->weight[i]);
+	for (size_t i = 0; i < f->par.particles; i += 2) {
+		int width = f->par.particles - i < 2 ? 1 : 2;
+		lanes z = (y - lanes_load(x + i, width)) * (1 / noise);
 
-		if (before > -FAR)
-			top = fmax(top, before - 0.5 * z * z);
+		least = lanes_min(least, lanes_pick(lanes_load(f->weight + i, width) > 0,
+						 lanes_abs(z), least));
 	}
-	return top;
+	return fmin(least[0], least[1]);
 }
 
-/* Weights after y divided by e^top, into next; returns the sum of their squares. */
-static double weigh(struct filter *f, double y, double noise, double top)
+/* Multiplies the weights by the likelihoods of y over that of the nearest particle, whose
+ * weight stays, so that they do not all underflow; returns the sum of their squares. */
+static double weigh(struct filter *f, double y, double noise, double near)
 {
 	const double *x = states_of(f, 0);
-	double scale = 1 / noise;
+	double *weight = f->weight;
 	size_t n = f->par.particles;
 	lanes sums[3] = { { 0 } };
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * scale, l = -0.5 * z * z - top,
-		      w = lanes_load(f->weight + i, width) *
-			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
+		lanes z = (y - lanes_load(x + i, width)) * (1 / noise),
+		      l = 0.5 * (near * near - z * z),
+		      w = lanes_load(weight + i, width) *
+			  lanes_if(l > -FAR, lanes_exp(l));
 
-		lanes_store(f->next + i, w, width);
+		lanes_store(weight + i, w, width);
 	}
 	/* in a loop of its own, so that several exponentials overlap in the processor */
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes w = lanes_load(f->next + i, width), at = lanes_load(x + i, width);
+		lanes w = lanes_load(weight + i, width), at = lanes_load(x + i, width);
 
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
@@ -303,17 +300,10 @@ static void prune(struct filter *f)
 
 double filter_update(struct filter *f, double y, double noise)
 {
-	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent, sum;
+	double before = f->sum, near = nearest(f, y, noise),
+	       squares = weigh(f, y, noise, near), sum = f->sum;
 	size_t n = f->par.particles;
 
-	if (!(f->sum > FADED)) {
-		top = best(f, y, noise);
-		squares = weigh(f, y, noise, top);
-	}
-	sum = f->sum;
-	spent = f->weight;
-	f->weight = f->next;
-	f->next = spent;
 	f->now.ess = sum * sum / squares;
 	if (f->par.share >= 1 || f->now.ess < f->par.share * (double)n) {
 		resample(f->draw, f->weight, sum, n, ancestors_of(f, 0));
@@ -321,5 +311,5 @@ double filter_update(struct filter *f, double y, double noise)
 		prune(f);
 		f->now.resamplings++;
 	}
-	return top + log(sum / before) - log(noise) - 0.5 * log(2 * M_PI);
+	return log(sum / before) - 0.5 * near * near - log(noise) - 0.5 * log(2 * M_PI);
 }

@@ -2,7 +2,7 @@
  *
  * State model x_k = mean(x_{k-1}, x_{k-2}, ...) + N(0, sigma^2), observation
  * y_k = x_k + noise.  The caller computes the means from the histories of the
- * particles; the filter adds the noise, computes weights as logarithms, and resamples
+ * particles; the filter adds the noise, updates the weights, and resamples
  * when the effective sample size falls below a share of N (Gordon, Salmond, Smith 1993;
  * Li's thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
  * states that have descendants.
