@@ -441,8 +441,9 @@ static void draw_groups(struct class *c, gsl_rng *rng)
 void partition_replicate(
 	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear)
 {
+	/* by pressure, so that the order of the tables does not matter */
 	for (int c = 0; c < p->nclasses; c++) {
-		struct class *k = &p->class[c];
+		struct class *k = &p->class[p->order[c]];
 		double ratio = draw_mean(k, rng);
 
 		k->now.mean = ratio * k->all.mean;
