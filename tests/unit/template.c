@@ -129,8 +129,8 @@ int main(void)
 	template_clear(&t);
 
 	make_record(sine, -1);
-	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK && t.shape &&
-			t.reversed && least_difference(&t, sine, -1) < NOISE,
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK &&
+			t.shape && t.reversed && least_difference(&t, sine, -1) < NOISE,
 		"reversed pulses are found, and are said to be");
 	template_clear(&t);
 
@@ -145,7 +145,8 @@ int main(void)
 	/* The mean of four events has six times the noise power of that of 24. */
 	make_record(odd, 1);
 	add_second_pulses(odd);
-	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK && t.shape,
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK &&
+			t.shape,
 		"a pulse is found of which few stand alone among pairs");
 	ok(t.events == PULSES / 6 && !t.signs, "it is the mean of those (%d)", t.events);
 	ok(t.shape && least_difference(&t, odd, 1) < 6 * NOISE, "their shape is right");
@@ -161,7 +162,8 @@ int main(void)
 			!t.shape,
 		"two events are too few");
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], known, N, 4, TRANSIT, 1, 20) == NUM_OK && !t.shape,
+	ok(template_find(&t, y[0], y[1], known, N, 4, TRANSIT, 1, 20) == NUM_OK &&
+			!t.shape,
 		"pulses of fewer than eight samples are not described");
 	template_clear(&t);
 	return tap_done();
