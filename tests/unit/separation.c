@@ -232,7 +232,8 @@ static void test_small(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
-	near(robust_noise(x, NULL, N, work), 2, 0.15, "the noise under a slow signal is right");
+	near(robust_noise(x, NULL, N, work), 2, 0.15,
+		"the noise under a slow signal is right");
 	for (int i = 0; i < N; i++)
 		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
 	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,
@@ -293,10 +294,11 @@ static void test_sections(void)
 	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9,
 		"a pulse ends where stated");
 	for (int k = 0; k < 2; k++) {
-		struct joint_scene scene = {
-			.shape = shape, .duration = 100, .transit = 200, .gain = 1,
-			.width = 1
-		};
+		struct joint_scene scene = { .shape = shape,
+			.duration = 100,
+			.transit = 200,
+			.gain = 1,
+			.width = 1 };
 		struct joint_pulse weak = { .t = 1000, .a = 5 },
 				   other = { .t = 1450, .a = strong[k] };
 

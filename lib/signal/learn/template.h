@@ -36,7 +36,8 @@ struct template
 
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
  * within a factor of two; transit: samples between the sensors, INFINITY if unknown;
- * width: of the pulses of sensor 2 over those of sensor 1; hidden: flags of samples that are not known, or NULL.  NUM_MEMORY. */
+ * width: of the pulses of sensor 2 over those of sensor 1; hidden: flags of samples that
+ * are not known, or NULL.  NUM_MEMORY. */
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
 	double width, double reach);
