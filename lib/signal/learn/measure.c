@@ -419,10 +419,13 @@ static void align(struct record *rec, const struct calibration *c)
 }
 
 /* Difference of the widths of both sensors' pulses that is not believed before pulses
- * are fitted. */
+ * are fitted.  In the first seeds of the 183 scenes of tests/matrix/scenes.tsv with equal
+ * coils that are asserted by make check the guess differs by more in five: noise alone,
+ * impulses, shocks and a strong baseline. */
 static const double WIDTHS = 0.03;
 
-/* First guess of the width of the pulses of sensor 2. */
+/* First guess of the width of the pulses of sensor 2.  The autocorrelation of a sine ends
+ * at twice the lag where it is lowest; other pulses have tails. */
 static enum num_status find_width(const struct record *rec, struct calibration *c)
 {
 	enum num_status status =
