@@ -431,4 +431,9 @@ rows plain.tsv >a
 duet --instrument opposite-rig.tsv opposite.au >b.tsv 2>said
 rows b.tsv >b
 same "a kept instrument has the polarity" a b
+duet --align 20ms rig.au >plain.tsv
+rows plain.tsv >a
+duet --align 20ms opposite.au >b.tsv 2>said
+rows b.tsv >b
+same "it is found at a given lag, too" a b
 done_testing

@@ -397,16 +397,18 @@ static enum separate_status find_reverse(
 					   : status;
 }
 
-/* OPPOSITE if the channels have nothing in common, but would have if one were negated. */
+/* OPPOSITE if the channels have nothing in common, but would have if one were negated, at
+ * the lag given if it is. */
 static enum separate_status find_opposite(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
+	struct calibration other = *c;
 	enum separate_status status;
 
-	if (!isnan(par->lag))
-		return SEPARATE_NO_LAG;
+	other.correlation = -c->correlation;
 	negate(rec->y2, rec->n);
-	status = follows(rec, rec->y1, rec->y2, c);
+	status = isnan(par->lag) ? follows(rec, rec->y1, rec->y2, c)
+				 : check_lag(rec, rec->y1, rec->y2, &other);
 	negate(rec->y2, rec->n);
 	return status == SEPARATE_OK ? SEPARATE_OPPOSITE : status;
 }
