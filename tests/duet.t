@@ -53,9 +53,13 @@ sensorsim --uniform 90um:110um --number 40 --burst 2 --span 3ms --gap 1.5ms --pe
 duet --stats stats.tsv twins.au >found.tsv
 is "twins in white noise are learned once" "$(column_of calibrations <stats.tsv)" 1
 for most in 0 1 2; do
-	WEARPIPE_LIMITS=pulses=$most duet twins.au >few && column verdict few | sort | uniq -c >few.$most
+	WEARPIPE_LIMITS=pulses=$most duet twins.au >few
+	echo $? >status.$most
+	column verdict few | sort | uniq -c >few.$most
 done
 is "what exceeds the limit of pulses is one unresolved row" "$(awk '{ print $1, $2 }' few.1)" "20 unresolved"
+is "sections too short to count the particles in them make the record doubtful" \
+	"$(cat status.1),$(cat status.2)" 3,0
 is "a limit below one is one" "$(cat few.0)" "$(cat few.1)"
 is "pulses up to the limit are found" "$(awk '{ print $1, $2 }' few.2)" "40 overlap"
 is "both twins of each pair are found" "$(score matched twins.tsv found.tsv)" 40
@@ -427,4 +431,9 @@ rows plain.tsv >a
 duet --instrument opposite-rig.tsv opposite.au >b.tsv 2>said
 rows b.tsv >b
 same "a kept instrument has the polarity" a b
+duet --align 20ms rig.au >plain.tsv
+rows plain.tsv >a
+duet --align 20ms opposite.au >b.tsv 2>said
+rows b.tsv >b
+same "it is found at a given lag, too" a b
 done_testing

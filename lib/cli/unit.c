@@ -317,24 +317,29 @@ static struct sum scale_ten(double value, int power)
  * of doubles. */
 static struct decimal shortest(double value)
 {
-	int binary, edge = frexp(value, &binary) == 0.5;
+	int binary;
+	double part = frexp(value, &binary);
 	/* The power of ten below, or the one before. */
 	struct decimal d = { .exponent = (int)floor((binary - 1) * M_LN2 / M_LN10) };
 	struct sum s = scale_ten(value, KEPT - 1 - d.exponent);
 	uint64_t kept, unit = 10000; /* of KEPT digits, that of SHORTEST */
-	double half; /* in units of the last digit kept, which is off by up to a half */
+	double half, over; /* half the distance, and what is not kept, in units of the
+			    * last digit kept */
 
 	if (s.value > 1e19 || (s.value == 1e19 && s.rest >= 0))
 		s = scale_ten(value, KEPT - 1 - ++d.exponent);
-	half = s.value / value * ldexp(1, binary - 54);
-	kept = (uint64_t)s.value + (uint64_t)llrint(s.rest);
+	half = s.value / part * 0x1p-54;
+	over = floor(s.rest);
+	kept = (uint64_t)s.value + (uint64_t)(int64_t)over;
+	over = s.rest - over;
 	/* Below a power of two the distance is another one. */
-	for (int n = SHORTEST; n <= LONGEST && !edge; n++, unit /= 10) {
-		double tail = (double)(kept % unit), middle = 0.5 * (double)unit;
+	for (int n = SHORTEST; n <= LONGEST && part != 0.5; n++, unit /= 10) {
+		double tail = (double)(kept % unit) + over, middle = 0.5 * (double)unit;
 		int up = tail > middle;
 		double off = up ? (double)unit - tail : tail;
 
-		if (fabs(tail - middle) <= 1 || fabs(off - half) <= 1 + 1e-6 * half)
+		if (fabs(tail - middle) <= 1e-6 * middle ||
+			fabs(off - half) <= 1e-6 * half)
 			break;
 		if (off > half && n < LONGEST)
 			continue;

@@ -131,20 +131,25 @@ static void join(size_t *before, size_t a, size_t b)
 	before[a > b ? a : b] = a < b ? a : b;
 }
 
-/* Joins each node with those on its left and above it. */
+static int is_at(const struct stress_node *a, int iy, int ix)
+{
+	return a->iy == iy && a->ix == ix;
+}
+
+/* Joins each node with those on its left and above it, unless these are joined. */
 static void join_nodes(struct footprints *f)
 {
 	const struct stress_node *node = f->node, *above = node;
 
 	for (size_t i = 0; i < f->nodes; i++) {
 		int ix = node[i].ix, iy = node[i].iy;
+		int left = i > 0 && is_at(&node[i - 1], iy, ix - 1);
 
-		f->region[i] = i;
-		if (i > 0 && node[i - 1].iy == iy && node[i - 1].ix == ix - 1)
-			join(f->region, i - 1, i);
+		f->region[i] = left ? f->region[i - 1] : i;
 		while (is_before(above, iy - 1, ix))
 			above++;
-		if (above->iy == iy - 1 && above->ix == ix)
+		if (is_at(above, iy - 1, ix) &&
+			!(left && above > node && is_at(above - 1, iy - 1, ix - 1)))
 			join(f->region, (size_t)(above - node), i);
 	}
 }

@@ -22,8 +22,8 @@ enum { KEPT_POINTS = 256 * 256 };
  * loaded.  A span costs as much as so many more nodes. */
 enum { MOST_FEW = 16 * WINDOW_FEW, SPAN_NODES = 8 };
 
-/* Nodes that are summed together. */
-enum { TOGETHER = 4 };
+/* Nodes that are summed together, in vectors of HALF. */
+enum { HALF = 4, TOGETHER = 2 * HALF };
 
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
 struct cut {
@@ -280,39 +280,26 @@ static int list_near(const struct tiling *t, const struct few *few, int first, i
 	return count;
 }
 
-static inline void put_nodes(double *node, const lanes4 *sum, int nodes)
-{
-	if (nodes == TOGETHER)
-		memcpy(node, sum, sizeof *sum);
-	else
-		for (int i = 0; i < nodes; i++)
-			node[i] = (*sum)[i];
-}
-
-/* Sums of three numbers, which the processor adds side by side: for the first nodes of
- * those together. */
+/* The sums of a number: for the first nodes of those together. */
 LANES_CLONES static void add_near(const struct tiling *t, const struct near *near,
-	int count, const int c[3], double *node, int nodes)
+	int count, int c, double *node, int nodes)
 {
-	size_t size = table_size(t);
-	size_t at0 = (size_t)c[0] * size, at1 = (size_t)c[1] * size,
-	       at2 = (size_t)c[2] * size;
-	lanes4 sum0 = { 0 }, sum1 = { 0 }, sum2 = { 0 }, add0, add1, add2;
+	size_t at = (size_t)c * table_size(t);
+	lanes4 sum = { 0 }, other = { 0 }, add;
 
 	for (int i = 0; i < count; i++) {
-		const double *from = near[i].table;
+		const double *from = near[i].table + at;
 		double load = near[i].load;
 
-		memcpy(&add0, from + at0, sizeof add0);
-		memcpy(&add1, from + at1, sizeof add1);
-		memcpy(&add2, from + at2, sizeof add2);
-		sum0 += load * add0;
-		sum1 += load * add1;
-		sum2 += load * add2;
+		memcpy(&add, from, sizeof add);
+		sum += load * add;
+		memcpy(&add, from + HALF, sizeof add);
+		other += load * add;
 	}
-	put_nodes(node + (size_t)c[0] * t->room, &sum0, nodes);
-	put_nodes(node + (size_t)c[1] * t->room, &sum1, nodes);
-	put_nodes(node + (size_t)c[2] * t->room, &sum2, nodes);
+	node += (size_t)c * t->room;
+	memcpy(node, &sum, (size_t)lesser_int(nodes, HALF) * sizeof *node);
+	if (nodes > HALF)
+		memcpy(node + HALF, &other, (size_t)(nodes - HALF) * sizeof *node);
 }
 
 /* Adds the loads [first, end) to a run of nodes; node: its row of the first number. */
@@ -320,16 +307,13 @@ static void add_to_run(const struct tiling *t, const struct few *few, int first,
 	const struct stress_span *run, double *node)
 {
 	struct near near[MOST_FEW + 1];
-	int last = t->w->numbers;
 
 	for (int x = run->begin; x < run->end; x += TOGETHER) {
 		int count = list_near(t, few, first, end, x, run->y, near);
 
-		for (int c = 0; c < last; c += 3)
-			add_near(t, near, count,
-				(const int[]){ c, lesser_int(c + 1, last - 1),
-					lesser_int(c + 2, last - 1) },
-				node + x, lesser_int(TOGETHER, run->end - x));
+		for (int c = 0; c < t->w->numbers; c++)
+			add_near(t, near, count, c, node + x,
+				lesser_int(TOGETHER, run->end - x));
 	}
 }
 

@@ -4,20 +4,16 @@
 #include <float.h>
 #include <math.h>
 
-static const char *const orders[] = { "window", "insample", "all", NULL };
-static const char *const schemes[] = { "systematic", "stratified", "residual",
-	"multinomial", NULL };
+static const char *const orders[] = { "window", "insample", NULL };
 
 struct filtering filtering = { .particles = 300, .seed = 1 };
 
 static struct opt_choice order = { ORDER_WINDOW, 0 };
-static struct opt_list range;
-static double hysteresis = 0.03, share = 0.5, freedom, process = NAN, noise = NAN;
+static double hysteresis = 0.03, share = 0.5, process = NAN, noise = NAN;
 static long largest = 60, window = 50;
-static int scheme;
 
 struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
-	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
+	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample",
 		"order of the grey model, or the rule that selects it", orders, 0 },
 	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
 		"largest order that may be chosen", NULL, 0 },
@@ -26,19 +22,11 @@ struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 	{ 0, "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
 		"smallest relative decrease of the error that changes the order", NULL,
 		0 },
-	{ 0, "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
-		"orders searched while the trend continues", NULL, 0 },
 	{ 0, "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
 		"number of particles", NULL, 0 },
-	{ 0, "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
-		"systematic|stratified|residual|multinomial", "resampling scheme",
-		schemes, 0 },
 	{ 0, "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
 		"resample below this effective sample size, as a fraction; 1: always",
 		NULL, 0 },
-	{ 0, "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
-		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
-		0 },
 	{ 0, "sigma-u", OPT_NUM, UNIT_NONE, &process, 0, DBL_MAX, "SD",
 		"process noise per row, in units of y (default from the innovations)",
 		NULL, 0 },
@@ -47,20 +35,13 @@ struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 		NULL, 0 },
 	OPT_END };
 
-void filtering_check(void)
-{
-	if (range.n == 2 && range.v[0] > range.v[1])
-		die(EXIT_USAGE, "--order-range requires LO:HI with LO not above HI");
-}
-
 struct adaptive *filtering_new(int unit)
 {
 	struct adaptive_par par = {
-		.filter = { (size_t)filtering.particles, 0, (enum resampling)scheme,
-			share, freedom },
+		.filter = { (size_t)filtering.particles, 0, share },
 		.order = { order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
 			order.word < 0 ? (int)order.value : (int)largest, (int)window,
-			hysteresis, (int)range.v[0], (int)range.v[1] },
+			hysteresis },
 		.process = process,
 		.noise = noise,
 		.seed = (uint64_t)filtering.seed,
@@ -81,6 +62,5 @@ void filtering_count(const struct adaptive *a)
 	stats_add("outliers", (double)c.outliers);
 	stats_add("restarts", (double)c.restarts);
 	stats_add("orders", (double)c.order.tried);
-	stats_add("orders_skipped", (double)c.order.skipped);
 	stats_add("order_changes", (double)c.order.changes);
 }

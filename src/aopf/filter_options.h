@@ -12,9 +12,6 @@ extern struct filtering {
 
 extern struct opt filtering_rows[]; /* for OPT_TABLE; not that of the seed */
 
-/* Dies where options make no sense. */
-void filtering_check(void);
-
 /* The filter of a unit. */
 struct adaptive *filtering_new(int unit);
 /* Counts the work it did. */

@@ -284,7 +284,6 @@ int main(int argc, char **argv)
 	struct sink out;
 	char *options, *in_units;
 
-	filtering_check();
 	outlook_check(bare);
 	if (threads > 1 && !(pool = pool_new((int)threads)))
 		die(EXIT_RUN, "no %ld threads", threads);

@@ -129,7 +129,8 @@ struct outlook {
 		double heeded;             /* events up to this time are done */
 		double early;              /* the last of those without an effect */
 		long rows;
-		long beyond; /* successive values past the threshold */
+		long beyond;  /* successive values past the threshold */
+		long healthy; /* values short of it before the failure */
 		int failed, alarm;
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
@@ -512,6 +513,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 				      ? now->beyond + 1
 				      : 0;
 	now->failed |= now->started && now->beyond >= persist;
+	now->healthy += !isnan(in->y) && now->beyond == 0 && !now->failed;
 	if (now->factor == 0 && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
 		now->rescaled = in->t;
@@ -531,11 +533,25 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		put_weights(o, cell + life_cells() + covariates_count());
 }
 
+/* Says so if one or two bad values at the start may have told the wrong direction. */
+static int check_direction(const struct outlook *o, const char *unit)
+{
+	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
+		return 0;
+	warn("%s%sthe unit fails after value %ld if the threshold is approached from %s, "
+	     "as the first value tells: --direction %s is for the other way",
+		unit, *unit ? ": " : "", o->now.healthy,
+		o->now.direction > 0 ? "below" : "above",
+		directions[o->now.direction > 0 ? DOWN : UP]);
+	return 1;
+}
+
 int outlook_settle(const struct outlook *o, const char *unit)
 {
 	unsigned long due = 0;
 	int rescaled = o->now.factor != 0,
-	    doubtful = !rescaled && rescaled_doubtful(&o->now.scale);
+	    doubtful = !rescaled && rescaled_doubtful(&o->now.scale),
+	    turned = check_direction(o, unit);
 
 	if (doubtful)
 		warn("%s%sno life is predicted after the last rows: their unit or the gain "
@@ -559,7 +575,7 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		due += e->t <= o->now.heeded;
 	}
 	if (due <= o->now.events)
-		return rescaled || doubtful;
+		return rescaled || doubtful || turned;
 	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
 	     "no effect",
 		events_file, due - o->now.events, *unit ? " of unit " : "", unit);

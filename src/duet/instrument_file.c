@@ -50,8 +50,8 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 	double v = place->spacing / delay, spread = sqrt(f->var) / rate / delay;
 
 	table_comment(t, "noise", "%.6g V, %.6g V", c->noise[0], c->noise[1]);
-	table_comment(t, "pulse", "%.6g s, gain %.6g, from %d pulses", c->duration / rate,
-		c->gain, c->events);
+	table_comment(t, "pulse", "%.6g s, gain %.6g, width %.6g, from %d pulses",
+		c->duration / rate, c->gain, c->width, c->events);
 	for (int k = 0; k < c->tones; k++)
 		table_comment(t, "line", "%.6g Hz", c->omega[k] * rate / (2 * M_PI));
 	if (f->count > 0 && delay > 0)

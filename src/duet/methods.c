@@ -143,8 +143,8 @@ static int is_doubtful(
 				100 * sqrt(c->unlike / c->compared))
 	      : doubt == SEPARATE_COUNTLESS
 		      ? xprintf("number and size of the particles in %.0f %% of it are not "
-				"known: its pulses are not told from noise of their "
-				"spectrum",
+				"known: it is unresolved, and too short or too much "
+				"like noise to count them",
 				100 * c->countless / c->samples)
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
@@ -197,7 +197,7 @@ static void tell_missing(const struct separate *s, struct found *out, const char
 {
 	static const char text[] =
 		"%.0f samples of sensor 1 and %.0f of sensor 2 were not measured: they "
-		"are at a limit of the converter, or constant";
+		"are nan, at a limit of the converter, or constant";
 	const double *missing = separate_counters(s)->missing, ratio = separate_ratio(s);
 	char *what;
 

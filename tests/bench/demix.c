@@ -108,6 +108,7 @@ int main(void)
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,
+		.width = 1,
 		.delta_min = 0,
 		.delta_max = 7,
 		.threshold = 33,

@@ -1,4 +1,4 @@
-/* filter_core N STEPS SCHEME SHARE: the bare particle filter on a drifting random walk.
+/* filter_core N STEPS SHARE: the bare particle filter on a drifting random walk.
  * Prints particles, steps, seconds, particle-steps per second, root mean square error
  * over that of the Kalman filter, and the root mean square difference from its mean over
  * its standard deviation. */
@@ -23,8 +23,7 @@ int main(int argc, char **argv)
 {
 	size_t n = argc > 1 ? strtoul(argv[1], NULL, 10) : 10000;
 	int steps = argc > 2 ? atoi(argv[2]) : 1000;
-	struct filter_par par = { n, 2, (enum resampling)(argc > 3 ? atoi(argv[3]) : 0),
-		argc > 4 ? atof(argv[4]) : 0.5, 0 };
+	struct filter_par par = { n, 2, argc > 3 ? atof(argv[3]) : 0.5 };
 	struct draw *source = draw_new(7, 0, RNG_NOISE), *d = draw_new(1, 0, RNG_FILTER);
 	struct filter *f = filter_new(&par, d);
 	double *mean = malloc(n * sizeof *mean), x = 0, k_x = 0, k_p = NOISE * NOISE;

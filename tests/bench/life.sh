@@ -3,7 +3,7 @@
 # build/bench/life.png.
 #
 # scene               knob   error, coverage, seconds (processor time)
-# filter-SCHEME       N      rms difference of the particle filter's mean from the Kalman
+# filter              N      rms difference of the particle filter's mean from the Kalman
 #                            filter's, over the posterior standard deviation; a drifting
 #                            random walk; seconds for 1e6 particle-steps
 # grey-RULE           N      mean |error| of the end of life over 1186 h, and coverage of
@@ -40,15 +40,10 @@ life() {
 
 all() {
 	printf 'scene\tknob\terror\tcoverage\tseconds\n'
-	i=0
-	for scheme in systematic stratified residual multinomial; do
-		for n in 100 1000 10000 100000 1000000; do
-			steps=$((20 + (n < 20000 ? 2000 : 40000000 / n)))
-			"$top/build/bench/filter_core" $n $steps $i 0.5 |
-				awk -v s="filter-$scheme" '{
-				printf "%s\t%s\t%s\tnan\t%.5f\n", s, $1, $6, 1e6 / $4 }'
-		done
-		i=$((i + 1))
+	for n in 100 1000 10000 100000 1000000; do
+		steps=$((20 + (n < 20000 ? 2000 : 40000000 / n)))
+		"$top/build/bench/filter_core" $n $steps 0.5 | awk '{
+			printf "filter\t%s\t%s\tnan\t%.5f\n", $1, $6, 1e6 / $4 }'
 	done
 	k=1
 	while [ $k -le "$pumps" ]; do
@@ -56,7 +51,7 @@ all() {
 		k=$((k + 1))
 	done
 	for n in 100 300 1000 3000; do
-		for rule in 7 20 window insample all; do
+		for rule in 7 20 window insample; do
 			life "grey-$rule" $n --model grey --order $rule --particles $n
 		done
 		life average-window $n --particles $n
@@ -85,10 +80,9 @@ set multiplot layout 1,2
 set key bottom left
 set xlabel "particles"
 set ylabel "difference from Kalman / standard deviation"
-plot for [s in "systematic stratified residual multinomial"] \
-	"< grep '^filter-".s."' table" using 2:3 with linespoints title s
+plot "< grep '^filter	' table" using 2:3 with linespoints notitle
 set xlabel "seconds for a series of 600 rows"
 set ylabel "error of the end of life / life"
-plot for [s in "grey-7 grey-20 grey-window grey-insample grey-all average-window"] \
+plot for [s in "grey-7 grey-20 grey-window grey-insample average-window"] \
 	"< grep '^".s."\t' table" using 5:3 with linespoints title s
 END

@@ -430,6 +430,7 @@ int main(int argc, char **argv)
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,
+		.width = 1,
 		.delta_min = -20,
 		.delta_max = 20,
 		.max_pulses = MOST,

@@ -31,7 +31,9 @@ frames s.au 2 >frames.txt
 awk '{ print $1, 0 }' frames.txt | au 10000 2 >dead.au
 refused "sensor 2 dead" 1 'sensor 2 is constant' duet dead.au
 awk 'NR == 777 { $2 = "nan" } { print $1, $2 }' frames.txt | au 10000 2 >nan.au
-refused "a sample is not a number" 1 'channel 2, frame 776: not a finite' duet nan.au
+duet nan.au >found.tsv 2>said
+scene "a sample is nan" "it is missing" 1 1 \
+	"$(grep -c '^# missing: 0 samples of sensor 1 and 1 of sensor 2' found.tsv)"
 awk 'NR == 99 { $1 = "inf" } { print $1, $2 }' frames.txt | au 10000 2 >inf.au
 refused "a sample is infinite" 1 'channel 1, frame 98: not a finite' duet inf.au
 head -n 63 frames.txt | au 10000 2 >short.au

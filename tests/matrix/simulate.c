@@ -47,6 +47,7 @@ static struct option {
 	{ "largest", 120e-6 },           /* ... */
 	{ "volts", 1 },     /* peak of 100 um at mean velocity, before the filter */
 	{ "gain", 0.909 },  /* of sensor 2 */
+	{ "width", 1 },     /* of its coil, over that of sensor 1 */
 	{ "snr", 30 },      /* dB: volts over the noise of a sample */
 	{ "negative", 0 },  /* share of particles with reversed pulses */
 	{ "highpass", 0 },  /* corner of a high-pass, Hz; 0: none */
@@ -60,6 +61,7 @@ static struct option {
 	{ "wander", 0 },    /* rms of its frequency, Hz */
 	{ "baseline", 0 },  /* random walk, V per root of a second */
 	{ "flowdrift", 0 }, /* change of the velocity over the record */
+	{ "jump", 1 },      /* factor of the velocity from the middle of the record on */
 	{ "gaindrift", 0 }, /* change of the gain of sensor 2 */
 	{ "noiserise", 1 }, /* noise at the end over noise at the beginning */
 	{ "clip", 0 },      /* limit, V; 0: none */
@@ -67,6 +69,7 @@ static struct option {
 	{ "shocks", 0 },    /* ... */
 	{ "impulses", 0 },  /* ... */
 	{ "dropouts", 0 },  /* ... */
+	{ "nan", 0 },       /* 1: samples in them are nan, not 0 */
 	{ "step", 0 },      /* of the converter, V; 0: none */
 	{ "still", 1 },     /* sensor 2 is constant behind this share of the record */
 };
@@ -302,7 +305,9 @@ static double draw_velocity(void)
 
 static double flow_at(double t)
 {
-	return 1 + get("flowdrift") * (t / get("seconds") - 0.5);
+	double s = t / get("seconds") - 0.5;
+
+	return (1 + get("flowdrift") * s) * (s < 0 ? 1 : get("jump"));
 }
 
 static void add_particle(double t)
@@ -504,11 +509,17 @@ static void whiten(double *y, size_t n)
 		}
 }
 
+/* Duration of the pulse of an event at either sensor. */
+static double lasts(const struct event *e, int c)
+{
+	return e->duration * (c ? get("width") : 1);
+}
+
 /* Samples that the pulses of an event fill at either sensor, with the tail of the
  * filters. */
 static void extent(const struct event *e, int c, long *first, size_t *n)
 {
-	double rate = get("rate"), tail = 0, t = e->time[c], T = e->duration, last;
+	double rate = get("rate"), tail = 0, t = e->time[c], T = lasts(e, c), last;
 
 	if (get("highpass") > 0)
 		tail = (5 + get("orders")) / (2 * M_PI * get("highpass"));
@@ -556,7 +567,7 @@ static void draw_event(struct event *e, double *x, long N)
 
 		extent(e, c, &first, &n);
 		y = allocate(n, sizeof *y);
-		render(e->shape, e->time[c], e->duration, first, n, y);
+		render(e->shape, e->time[c], lasts(e, c), first, n, y);
 		for (size_t i = 0; i < n; i++) {
 			long k = first + (long)i;
 
@@ -570,7 +581,7 @@ static void draw_event(struct event *e, double *x, long N)
 	}
 	if (e->shape) {
 		e->begin += e->shape->from * e->duration;
-		e->end += e->shape->to * e->duration;
+		e->end += e->shape->to * lasts(e, 1);
 	} else {
 		e->end += e->duration;
 		e->peak = e->level[0];
@@ -642,7 +653,7 @@ static void spoil(double *x, long N, unsigned char *masked)
 		if (events[i].kind == DROPOUT)
 			for (long k = (long)(events[i].time[0] * rate);
 				(double)k < events[i].end * rate && k < N; k++) {
-				x[2 * k] = x[2 * k + 1] = 0;
+				x[2 * k] = x[2 * k + 1] = get("nan") > 0 ? NAN : 0;
 				masked[2 * k] = masked[2 * k + 1] = 1;
 			}
 	for (long k = 0; k < 2 * N; k++) {
@@ -668,7 +679,7 @@ static void note_masked(struct event *e, long N, const unsigned char *masked)
 
 		extent(e, c, &first, &n);
 		y = allocate(n, sizeof *y);
-		render(e->shape, e->time[c], e->duration, first, n, y);
+		render(e->shape, e->time[c], lasts(e, c), first, n, y);
 		for (size_t i = 0; i < n; i++) {
 			long k = first + (long)i;
 
@@ -684,8 +695,8 @@ static void note_masked(struct event *e, long N, const unsigned char *masked)
  * in units of white noise. */
 static void make_slopes(struct event *e)
 {
-	double T = e->duration, tau = e->time[1] - e->time[0];
-	double h = 1e-3 * T, sigma = noise_at(e->time[0]), rho = get("common");
+	double tau = e->time[1] - e->time[0], h = 1e-3 * e->duration,
+	       sigma = noise_at(e->time[0]), rho = get("common");
 	long last;
 	size_t n;
 
@@ -698,6 +709,7 @@ static void make_slopes(struct event *e)
 			double *a = allocate(e->n, sizeof *a),
 			       *b = allocate(e->n, sizeof *b);
 			double t = e->time[c], dt = p == 0 ? h : p == 1 && c ? h : 0;
+			double T = lasts(e, c);
 			double dT = p == 1 ? h * T / tau : 0;
 
 			render(e->shape, t + dt, T + dT, e->first, e->n, a);

@@ -20,7 +20,7 @@ static void draw(void)
 	for (uint64_t i = 0; i < N; i++) {
 		philox_normal2(3, 0, RNG_NOISE, i, z);
 		x[i] = 5 + (i < STILL || i >= STILL + STANDS ? z[0] : 0);
-		lost[i] = converter_next(&converter, x[i]);
+		lost[i] = converter_next(&converter, &x[i]);
 	}
 }
 

@@ -35,7 +35,7 @@ static int hide(struct converter *c, unsigned char *hidden)
 	memset(c, 0, sizeof *c);
 	memset(hidden, 0, N);
 	for (size_t i = 0; i < N; i++) {
-		size_t lost = converter_next(c, x[i]);
+		size_t lost = converter_next(c, &x[i]);
 
 		memset(hidden + i + 1 - lost, 1, lost);
 	}
@@ -75,6 +75,13 @@ int main(void)
 		ok(right == 100 && want <= 110,
 			"a dropout of 100 samples in steps of %g V is hidden, with %d beside it",
 			steps[k], want - right);
+		draw(steps[k], 7 + k);
+		for (int i = 5000; i < 5100; i++)
+			x[i] = NAN;
+		ok(hide(&c, hidden) == 100 && memchr(hidden, 1, N) == hidden + 5000 &&
+				x[5000] == x[4999] && x[5099] == x[4999],
+			"100 missing samples in steps of %g V are hidden, and held",
+			steps[k]);
 	}
 	return tap_done();
 }

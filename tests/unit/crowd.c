@@ -69,6 +69,7 @@ static void test_wrong_template(const double *y1, const double *y2)
 	struct calibration c = { .shape = shape_new(PULSE_SINE),
 		.duration = 124,
 		.gain = 0.9,
+		.width = 1,
 		.noise = { 1, 1 },
 		.transit = 200,
 		.delta_min = -10,

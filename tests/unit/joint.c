@@ -13,6 +13,7 @@ static struct joint_scene make_scene(const struct shape *shape)
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,
+		.width = 1,
 		.delta_min = 0,
 		.delta_max = 7,
 		.threshold = 33,
@@ -66,6 +67,43 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 	for (int i = 0; i < N; i++)
 		worst_t = tap_max(worst_t, fabs(y[0][i]) + fabs(y[1][i]));
 	near(worst_t, 0, 1e-12 * 1300, "joint_add subtracts what it added");
+}
+
+/* A coil that is wider by a fifth: the pulse of sensor 2 is that of sensor 1 drawn out,
+ * and one pulse describes both, as exactly as without. */
+static void test_wide(struct joint *j, const struct joint_scene *s)
+{
+	static double y[2][N], alike[2][N];
+	struct joint_scene wide = *s;
+	struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 900 }, found[20];
+	struct joint_result r;
+	double worst = 0;
+	int m = 0;
+
+	wide.width = 1.2;
+	memset(y, 0, sizeof y);
+	memset(alike, 0, sizeof alike);
+	joint_add(&wide, &p, 1, y[0], y[1], N);
+	joint_add(s, &p, 1, alike[0], alike[1], N);
+	/* the arrival is between two samples: 5 samples of one are 6 of the other */
+	for (int k = -7; k <= 7; k++) {
+		double at = 303.4 + 6 * k, u = at - floor(at);
+		double v = (1 - u) * y[1][(int)at] + u * y[1][(int)at + 1];
+		double to = 303.4 + 5 * k, w = to - floor(to);
+		double x = (1 - w) * alike[1][(int)to] + w * alike[1][(int)to + 1];
+
+		worst = tap_max(worst, fabs(v - x));
+	}
+	/* linear interpolation errs by 1/8 of the curvature, (2 pi / T)^2 of the peak */
+	near(worst, 0, 900 * 4e-3 / 8,
+		"the pulse of a wider coil is that of the other drawn out");
+	ok(joint_fit(j, &wide, y[0], y[1], N, found, &m, &r) == JOINT_OK && m == 1,
+		"one pulse describes it");
+	near(fabs(found[0].t - p.t) + fabs(found[0].delta - p.delta), 0, 2e-4,
+		"arrival and delay are exact");
+	m = 0;
+	ok(joint_fit(j, s, y[0], y[1], N, found, &m, &r) == JOINT_OK && m > 1,
+		"equal coils need several pulses for it");
 }
 
 /* The inverse of the normal matrix of one pulse against the closed form for the sine:
@@ -387,6 +425,7 @@ int main(void)
 	struct joint *j = joint_new();
 
 	test_clean(j, &s);
+	test_wide(j, &s);
 	test_bound(j, &s);
 	test_noisy(j, &s, 1, 0, 0);
 	test_noisy(j, &s, 2, 0, 0);

@@ -62,8 +62,8 @@ static void test_grey_series(void)
  * errors are those of the grey model itself. */
 static void test_orders(void)
 {
-	struct order_par par = { ORDER_WINDOW, 30, 20, 0.03, 0, 0 };
-	struct order *o = order_new(&par), *all, *ranged;
+	struct order_par par = { ORDER_WINDOW, 30, 20, 0.03 };
+	struct order *o = order_new(&par);
 	struct draw *d = draw_new(4, 0, RNG_NOISE);
 	struct grey g = { 0 };
 	double y[200];
@@ -78,22 +78,7 @@ static void test_orders(void)
 		"the forecast is that of the chosen order");
 	ok(order_chosen(o) > 10, "white noise leads to a high order: %d",
 		order_chosen(o));
-	par.rule = ORDER_ALL;
-	all = order_new(&par);
-	par.range_low = 4;
-	par.range_high = 8;
-	ranged = order_new(&par);
-	for (int k = 0; k < 200; k++) {
-		order_add(all, y[k], 1);
-		order_add(ranged, y[k], 1);
-	}
-	ok(order_counts(ranged).skipped > 0 &&
-			order_counts(ranged).tried + order_counts(ranged).skipped ==
-				order_counts(all).tried,
-		"the orders that the range leaves out are counted");
 	order_free(o);
-	order_free(all);
-	order_free(ranged);
 	draw_free(d);
 }
 
@@ -555,11 +540,43 @@ static void test_bursts(void)
 	bank_chances_free(chances);
 }
 
+/* Linear wear read at ages that are powers of a ratio, up to 0.4 of the life: that every
+ * gap is longer than the ones before tells no halt, with which the rest of the life would
+ * be a millionth.  The median is early because the wear may accelerate, by a quarter
+ * where nine rows are known. */
+static void test_decades(void)
+{
+	static const double ratio[] = { 1.6, 2, 10 };
+	static const int rows[] = { 30, 25, 9 };
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	double life[DRAWS], mid;
+
+	for (int i = 0; i < 3; i++) {
+		struct draw *d = draw_new((uint64_t)i, 0, RNG_NOISE);
+		struct bank *b = bank_new(&par);
+		double last = pow(ratio[i], rows[i] - 1);
+
+		for (int k = 0; k < rows[i]; k++) {
+			double t = pow(ratio[i], k);
+
+			bank_add(b, t, 0.4 * t / last + 0.002 * draw_normal(d));
+		}
+		bank_draw(b, chances, last, 1, life);
+		mid = median(life, DRAWS) / (1.5 * last);
+		ok(mid > 0.5 && mid < 1.2,
+			"readings at powers of %g show no halt: the median is %.2f",
+			ratio[i], mid);
+		bank_free(b);
+		draw_free(d);
+	}
+	bank_chances_free(chances);
+}
+
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
-static const struct adaptive_par default_filter = { .filter = { 300, 0,
-							    RESAMPLE_SYSTEMATIC, 0.5, 0 },
-	.order = { ORDER_WINDOW, 60, 50, 0.03, 0, 0 },
+static const struct adaptive_par default_filter = { .filter = { 300, 0, 0.5 },
+	.order = { ORDER_WINDOW, 60, 50, 0.03 },
 	.process = NAN,
 	.noise = NAN,
 	.seed = 1 };
@@ -789,6 +806,7 @@ int main(void)
 	test_wander();
 	test_fleet();
 	test_bursts();
+	test_decades();
 	test_adaptive();
 	test_passage_through_zero();
 	test_forecast_after_step();

@@ -232,7 +232,8 @@ static void test_small(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
-	near(robust_noise(x, N, work), 2, 0.15, "the noise under a slow signal is right");
+	near(robust_noise(x, NULL, N, work), 2, 0.15,
+		"the noise under a slow signal is right");
 	for (int i = 0; i < N; i++)
 		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
 	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,
@@ -293,9 +294,11 @@ static void test_sections(void)
 	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9,
 		"a pulse ends where stated");
 	for (int k = 0; k < 2; k++) {
-		struct joint_scene scene = {
-			.shape = shape, .duration = 100, .transit = 200, .gain = 1
-		};
+		struct joint_scene scene = { .shape = shape,
+			.duration = 100,
+			.transit = 200,
+			.gain = 1,
+			.width = 1 };
 		struct joint_pulse weak = { .t = 1000, .a = 5 },
 				   other = { .t = 1450, .a = strong[k] };
 
@@ -322,6 +325,40 @@ static void test_sections(void)
 	shape_free(shape);
 }
 
+/* Nine pulses, six of which overlap, in noise of a twentieth: those of the second
+ * channel 1.25 times as long, half as high and of the other sign. */
+static void test_width(void)
+{
+	static double y[2][N];
+	static const double at[] = { 250, 900, 960, 1500, 1585, 2100, 2700, 3300, 3330 };
+	double width, silent;
+
+	for (int equal = 0; equal < 2; equal++) {
+		for (int c = 0; c < 2; c++)
+			for (int i = 0; i < N; i++) {
+				y[c][i] = 0.05 * normal((uint64_t)(N * c + i));
+				for (int k = 0; k < 9; k++) {
+					double T = c && !equal ? 125 : 100;
+					double u = (i - at[k] - 200 * c) / T;
+
+					if (fabs(u) < 0.5)
+						y[c][i] -= (c ? -0.5 : 1) *
+							   sin(2 * acos(-1) * u);
+				}
+			}
+		ok(align_width(y[0], y[1], N, 125, &width) == NUM_OK, "a width is found");
+		/* The distances of pulses that overlap are not longer, which six of nine
+		 * make 3 % of; fits correct up to 12 %. */
+		near(width, equal ? 1 : 1.25, equal ? 0.01 : 0.06,
+			equal ? "pulses of one width are found to be so"
+			      : "longer pulses are found to be so");
+	}
+	for (int i = 0; i < N; i++)
+		y[1][i] = 0;
+	ok(align_width(y[0], y[1], N, 125, &silent) == NUM_OK && silent == 1,
+		"the width of a silent channel is 1");
+}
+
 int main(void)
 {
 	test_shape(PULSE_SINE, "the table of the sine pulse gives the pulse");
@@ -334,5 +371,6 @@ int main(void)
 	test_tone_values();
 	test_small();
 	test_sections();
+	test_width();
 	return tap_done();
 }

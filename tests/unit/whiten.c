@@ -139,6 +139,7 @@ static void test_baseline(const struct whitening *w, const double *h, size_t tap
 		.duration = 100,
 		.transit = INFINITY,
 		.gain = 0.9,
+		.width = 1,
 		.delta_max = 7,
 		.max_pulses = 1,
 		.tone_variance = INFINITY };

@@ -69,22 +69,6 @@ double grey_level_error(const struct grey *g)
 	return g->n > 1 ? sqrt(grey_residual(g) / (g->n - 1)) : 0;
 }
 
-static double clamp(double x, double limit)
-{
-	return x > limit ? limit : x < -limit ? -limit : x;
-}
-
-/* Exponents are limited to 600: the results stay finite, and such growth is beyond any
- * threshold. */
-double grey_curve(double level, double rate, double t, double gap)
-{
-	struct grey_interval i = grey_interval(t, gap);
-	double x = clamp(rate * i.half, 300), mean;
-
-	mean = fabs(x) > GREY_SERIES ? sinh(x) / x : grey_mean_exp(lanes_all(x))[0];
-	return level * mean * lanes_exp(lanes_all(clamp(-rate * i.middle, 300)))[0];
-}
-
 double grey_passage(double now, double rate, double limit)
 {
 	double time = -log(limit / now) / rate;
@@ -95,7 +79,8 @@ double grey_passage(double now, double rate, double limit)
 double grey_forecast(const struct grey *g, double h, double gap)
 {
 	double rate = grey_rate(g),
-	       next = grey_curve(grey_level(g), rate, g->span + h, gap),
+	       next = grey_curve(
+		       lanes_all(grey_level(g)), lanes_all(rate), g->span + h, gap)[0],
 	       newest = g->fit.mean_y - rate * g->fit.mean_x,
 	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
 

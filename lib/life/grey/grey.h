@@ -65,12 +65,8 @@ double grey_level_error(const struct grey *g);
  * steps (h = gap = 1: the next point of an evenly spaced series).  Finite for finite
  * input. */
 double grey_forecast(const struct grey *g, double h, double gap);
-/* The mean of level exp(-rate t) over the gap that ends at t: what grey_forecast() makes
- * of the fitted level and rate at t = span + h. */
-double grey_curve(double level, double rate, double t, double gap);
-
-/* The time in which that curve, now at a value, reaches a limit on the side to which it
- * goes; INFINITY: never, also where it would have to change its sign. */
+/* The time in which the curve of the fit, now at a value, reaches a limit on the side to
+ * which it goes; INFINITY: never, also where it would have to change its sign. */
 double grey_passage(double now, double rate, double limit);
 
 /* Largest a of a fit over n intervals of this length in all: in x_k (1 + a / 2) = b - a
@@ -90,37 +86,27 @@ static inline double grey_reach(double limit, double h)
 	return exp(fmin(600, 2 + limit * h));
 }
 
-/* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
- * omitted term is x^10 / 11!. */
-static const double GREY_SERIES = 0.1;
-
-static inline lanes grey_mean_exp(lanes x)
+static inline lanes grey_limit(lanes x)
 {
-	lanes xx = x * x;
+	return lanes_max(lanes_all(-300), lanes_min(lanes_all(300), x));
+}
 
-	return 1 +
+/* The mean of level exp(-rate t) over the gap that ends at t, of two models: what
+ * grey_forecast() makes of the fitted level and rate at t = span + h.  It is level
+ * exp(-rate middle) sinh(x) / x with x = rate gap / 2, near 0 by the series 1 + x^2 / 3!
+ * +
+ * ..., whose first omitted term is x^10 / 11!.  Exponents are limited: the results stay
+ * finite, and such growth is beyond any threshold. */
+static inline lanes grey_curve(lanes level, lanes rate, double t, double gap)
+{
+	lanes x = grey_limit(0.5 * gap * rate), xx = x * x, mean;
+	lane_mask far = xx > 0.01;
+
+	mean = 1 +
 	       xx * (1. / 6 + xx * (1. / 120 + xx * (1. / 5040 + xx * (1. / 362880))));
-}
-
-/* The interval of a curve: the mean of exp(-rate t) over it is exp(-rate middle) times
- * sinh(x) / x at x = rate half; by series and within exp()'s range up to that rate. */
-struct grey_interval {
-	double half, middle, largest_rate;
-};
-
-static inline struct grey_interval grey_interval(double t, double gap)
-{
-	double half = 0.5 * gap, middle = t - half;
-
-	return (struct grey_interval){ half, middle,
-		fmin(GREY_SERIES / half, 300 / middle) };
-}
-
-/* grey_curve() for two models at a time whose rates are at most the largest. */
-static inline lanes grey_curve_near(
-	lanes level, lanes rate, const struct grey_interval *i)
-{
-	return level * grey_mean_exp(rate * i->half) * lanes_exp(rate * -i->middle);
+	if (far[0] | far[1])
+		mean = lanes_pick(far, 0.5 * (lanes_exp(x) - lanes_exp(-x)) / x, mean);
+	return level * mean * lanes_exp(grey_limit(-rate * (t - 0.5 * gap)));
 }
 
 #endif

@@ -5,19 +5,15 @@
  * and not on random numbers.  Rules:
  *   window    smallest mean squared error over the last rows, all orders over the same
  *             rows; the order changes only when that falls by the hysteresis
- *   all       the same over all rows so far (the thesis' accumulated error)
  *   insample  smallest mean squared residual of the fit itself
  *   fixed     always the largest order
- * While the trend continues (the mean of the last ten rows lies farther from the first
- * observation than that of the ten before) the search may be kept to a range, the thesis'
- * shortcut; the orders left out are counted.
  */
 #ifndef LIFE_ORDER_H
 #define LIFE_ORDER_H
 
 #include "num/state.h"
 
-enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_ALL, ORDER_FIXED };
+enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_FIXED };
 
 struct order_par {
 	enum order_rule rule;
@@ -25,8 +21,6 @@ struct order_par {
 	int window;        /* rows over which errors are averaged, >= 1 */
 	double hysteresis; /* smallest relative decrease of the error that changes the
 			      order */
-	int range_low,
-		range_high; /* searched while the trend continues; 0, 0: no shortcut */
 };
 
 struct order;
@@ -42,9 +36,9 @@ int order_chosen(const struct order *o); /* 0 below four observations */
 /* The chosen order's forecast h steps ahead from the observations alone; the last one
  * itself below four of them. */
 double order_forecast(const struct order *o, double h);
-/* Orders fitted so far, those left out by the range, and changes of the order. */
+/* Orders fitted so far, and changes of the order. */
 struct order_counts {
-	unsigned long tried, skipped, changes;
+	unsigned long tried, changes;
 };
 struct order_counts order_counts(const struct order *o);
 

@@ -188,11 +188,9 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 	       *mean = a->mean;
 	int newer;
 	const struct sums *older = add_older(a, count, centre, &newer);
-	struct grey_interval ahead;
 
 	for (int k = 0; k < count; k++)
 		end += a->lag[k].gap;
-	ahead = grey_interval(end, h);
 	most = grey_rate_limit(count, end - h);
 	reach = grey_reach(most, h);
 	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
@@ -221,13 +219,10 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 		const struct sums *one = &a->sums[i], *two = one + width - 1;
 		lanes level = lanes_load(mean + i, width), rate = { one->u, two->u },
 		      limit = { one->tail, two->tail }, middle = { one->x, two->x },
-		      next = grey_curve_near(level, rate, &ahead);
-		lane_mask far = lanes_abs(rate) > ahead.largest_rate;
+		      next = grey_curve(level, rate, end, h);
 
-		for (int k = 0; (far[0] | far[1]) && k < width; k++)
-			next[k] = grey_curve(level[k], rate[k], end, h);
-		far = lanes_abs(next) > limit;
-		lanes_store(mean + i, lanes_pick(far, middle, next), width);
+		lanes_store(mean + i, lanes_pick(lanes_abs(next) > limit, middle, next),
+			width);
 	}
 	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
 		mean[i] = mean[newest->ancestor[i]];

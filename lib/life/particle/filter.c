@@ -1,25 +1,21 @@
 /* filter.c - see filter.h */
 #include "life/particle/filter.h"
 #include "num/lanes.h"
-#include "num/student.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
+/* Largest distance of a log-likelihood from the largest at which exp() is not 0; a
  * particle farther below has weight 0. */
 static const double FAR = 700;
-/* Sum of the weights below which they are computed as logarithms.  A particle that has
- * underflowed by then has less than 1e-200 of the sum. */
-static const double FADED = 1e-100;
 
 struct filter {
 	struct filter_par par;
 	struct draw *draw;
-	double *x;             /* [depth][N], a ring */
-	uint32_t *ancestor;    /* [depth][N]: of each state of the next step */
-	size_t *count;         /* [depth]: states that still have descendants */
-	double *weight, *next; /* next: those after */
+	double *x;          /* [depth][N], a ring */
+	uint32_t *ancestor; /* [depth][N]: of each state of the next step */
+	size_t *count;      /* [depth]: states that still have descendants */
+	double *weight;
 	uint32_t *kept;
 	int newest, filled;
 	double sum; /* of weight */
@@ -39,9 +35,8 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 	f->ancestor = calloc(all, sizeof *f->ancestor);
 	f->count = calloc((size_t)par->depth, sizeof *f->count);
 	f->weight = calloc(n, sizeof *f->weight);
-	f->next = calloc(n, sizeof *f->next);
 	f->kept = calloc(n, sizeof *f->kept);
-	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->next || !f->kept) {
+	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->kept) {
 		filter_free(f);
 		return NULL;
 	}
@@ -73,7 +68,6 @@ void filter_free(struct filter *f)
 	free(f->ancestor);
 	free(f->count);
 	free(f->weight);
-	free(f->next);
 	free(f->kept);
 	free(f);
 }
@@ -197,53 +191,44 @@ struct filter_now filter_now(const struct filter *f)
 	return f->now;
 }
 
-/* Of two states, without its constant. */
-static inline lanes log_likelihood(lanes z, double nu)
-{
-	return nu > 0 ? -0.5 * (nu + 1) *
-				(lanes){ log1p(z[0] * z[0] / nu),
-					log1p(z[1] * z[1] / nu) }
-		      : -0.5 * z * z;
-}
-
-/* Logarithm of the largest weight after the observation y, rounded as in weigh(): far
- * from y it could otherwise differ from all of them by more than FAR. */
-static double best(const struct filter *f, double y, double noise)
+/* The least distance of a particle that has a weight from y, in standard deviations. */
+static double nearest(const struct filter *f, double y, double noise)
 {
 	const double *x = states_of(f, 0);
-	double top = -INFINITY, nu = f->par.freedom, scale = 1 / noise;
+	lanes least = lanes_all(INFINITY);
 
-	for (size_t i = 0; i < f->par.particles; i++) {
-		double l = log_likelihood(lanes_all((y - x[i]) * scale), nu)[0],
-		       before = log(f->weight[i]);
+	for (size_t i = 0; i < f->par.particles; i += 2) {
+		int width = f->par.particles - i < 2 ? 1 : 2;
+		lanes z = (y - lanes_load(x + i, width)) * (1 / noise);
 
-		if (before > -FAR)
-			top = fmax(top, before + l);
+		least = lanes_min(least, lanes_pick(lanes_load(f->weight + i, width) > 0,
+						 lanes_abs(z), least));
 	}
-	return top;
+	return fmin(least[0], least[1]);
 }
 
-/* Weights after y divided by e^top, into next; returns the sum of their squares. */
-static double weigh(struct filter *f, double y, double noise, double top)
+/* Multiplies the weights by the likelihoods of y over that of the nearest particle, whose
+ * weight stays, so that they do not all underflow; returns the sum of their squares. */
+static double weigh(struct filter *f, double y, double noise, double near)
 {
 	const double *x = states_of(f, 0);
-	double nu = f->par.freedom, scale = 1 / noise;
+	double *weight = f->weight;
 	size_t n = f->par.particles;
 	lanes sums[3] = { { 0 } };
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes l =
-			log_likelihood((y - lanes_load(x + i, width)) * scale, nu) - top;
-		lanes w = lanes_load(f->weight + i, width) *
-			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
+		lanes z = (y - lanes_load(x + i, width)) * (1 / noise),
+		      l = 0.5 * (near * near - z * z),
+		      w = lanes_load(weight + i, width) *
+			  lanes_if(l > -FAR, lanes_exp(l));
 
-		lanes_store(f->next + i, w, width);
+		lanes_store(weight + i, w, width);
 	}
 	/* in a loop of its own, so that several exponentials overlap in the processor */
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes w = lanes_load(f->next + i, width), at = lanes_load(x + i, width);
+		lanes w = lanes_load(weight + i, width), at = lanes_load(x + i, width);
 
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
@@ -254,14 +239,26 @@ static double weigh(struct filter *f, double y, double noise, double top)
 	return sums[1][0] + sums[1][1];
 }
 
-/* log of the constant of the likelihood */
-static double log_constant(const struct filter *f, double noise)
+/* Point k of the comb, k + offset, is compared with the running sum of the weights.  The
+ * ancestor of a particle is the number of those whose last copy lies before it; these are
+ * counted and summed without a branch, which would be mispredicted. */
+void resample(
+	struct draw *draw, const double *weight, double sum, size_t n, uint32_t *ancestor)
 {
-	double nu = f->par.freedom;
+	double scale = (double)n / sum, reached = 0, offset = draw_uniform(draw);
+	uint32_t ended = 0;
 
-	if (nu > 0)
-		return student_log_constant(nu) - log(noise);
-	return -0.5 * log(2 * M_PI) - log(noise);
+	memset(ancestor, 0, n * sizeof *ancestor);
+	for (size_t i = 0; i + 1 < n; i++) {
+		size_t end;
+
+		reached += weight[i];
+		end = (size_t)(reached * scale + (1 - offset));
+		if (end < n)
+			ancestor[end]++;
+	}
+	for (size_t k = 0; k < n; k++)
+		ancestor[k] = ended += ancestor[k];
 }
 
 /* Renumbers the distinct values of n ascending ancestors from 0 on, and lists the old
@@ -303,23 +300,16 @@ static void prune(struct filter *f)
 
 double filter_update(struct filter *f, double y, double noise)
 {
-	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent, sum;
+	double before = f->sum, near = nearest(f, y, noise),
+	       squares = weigh(f, y, noise, near), sum = f->sum;
 	size_t n = f->par.particles;
 
-	if (!(f->sum > FADED)) {
-		top = best(f, y, noise);
-		squares = weigh(f, y, noise, top);
-	}
-	sum = f->sum;
-	spent = f->weight;
-	f->weight = f->next;
-	f->next = spent;
 	f->now.ess = sum * sum / squares;
 	if (f->par.share >= 1 || f->now.ess < f->par.share * (double)n) {
-		resample(f->par.scheme, f->draw, f->weight, sum, n, ancestors_of(f, 0));
+		resample(f->draw, f->weight, sum, n, ancestors_of(f, 0));
 		weigh_equally(f);
 		prune(f);
 		f->now.resamplings++;
 	}
-	return log_constant(f, noise) + top + log(sum / before);
+	return log(sum / before) - 0.5 * near * near - log(noise) - 0.5 * log(2 * M_PI);
 }

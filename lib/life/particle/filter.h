@@ -2,7 +2,7 @@
  *
  * State model x_k = mean(x_{k-1}, x_{k-2}, ...) + N(0, sigma^2), observation
  * y_k = x_k + noise.  The caller computes the means from the histories of the
- * particles; the filter adds the noise, computes weights as logarithms, and resamples
+ * particles; the filter adds the noise, updates the weights, and resamples
  * when the effective sample size falls below a share of N (Gordon, Salmond, Smith 1993;
  * Li's thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
  * states that have descendants.
@@ -21,14 +21,14 @@
 #ifndef LIFE_FILTER_H
 #define LIFE_FILTER_H
 
-#include "life/particle/resample.h"
+#include "life/particle/draw.h"
+#include <stddef.h>
+#include <stdint.h>
 
 struct filter_par {
 	size_t particles; /* N >= 1 */
 	int depth;        /* states remembered, >= 1 */
-	enum resampling scheme;
-	double share;   /* resample when ESS < share N; 1: always */
-	double freedom; /* of Student-t observation noise; 0: Gaussian */
+	double share;     /* resample when ESS < share N; 1: always */
 };
 
 struct filter;
@@ -70,5 +70,12 @@ struct filter_now {
 	unsigned long resamplings; /* so far */
 };
 struct filter_now filter_now(const struct filter *f);
+
+/* Systematic resampling (Douc, Cappe, Moulines, "Comparison of resampling schemes for
+ * particle filtering", ISPA 2005): fills ancestor[n] in ascending order with the floor or
+ * the ceiling of n w[i] copies of particle i, n w[i] on average, from weight[n] >= 0 with
+ * the given sum > 0. */
+void resample(struct draw *draw, const double *weight, double sum, size_t n,
+	uint32_t *ancestor);
 
 #endif

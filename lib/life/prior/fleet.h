@@ -1,10 +1,10 @@
 /* fleet.h - the paths of earlier units as coordinates of a bank
  *
  * Each earlier unit is reduced to the ages at which it first reached the levels of a
- * grid. Units of twenty rows or more are smoothed by running medians of three; values
- * between rows are linear.  A unit that has not reached the threshold is extrapolated to
- * it along the median ages that its own bank predicts.  In the coordinate of a path, a
- * unit that wears like it is a straight line with a slope near 1.
+ * grid, by running medians of three rows; values between rows are linear.  A unit that
+ * has not reached the threshold is extrapolated to it along the median ages that its own
+ * bank predicts.  In the coordinate of a path, a unit that wears like it is a straight
+ * line with a slope near 1.
  *
  *	struct fleet *f = fleet_new(threshold, direction);
  *	fleet_add(f, unit, t, y);     (unit: 0, 1, ... in any order, t rising for each)

@@ -1,24 +1,20 @@
 /* partition.c - see partition.h */
 #include "life/prior/partition.h"
 #include "num/realisations.h"
-#include "num/room.h"
 #include "num/running.h"
 #include "num/status.h"
 #include <gsl/gsl_randist.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* For the sizes, realisations are collected in groups.  Two neighbouring groups are
- * merged into one when there are GROUPS_MOST of them, or more than GROUP_CELLS cells and
- * more than GROUPS_LEAST groups.  A mean over groups varies between draws like one over
- * their realisations. */
-enum { GROUPS_MOST = 4096, GROUPS_LEAST = 64, GROUP_CELLS = 1 << 20 };
+/* For the sizes, realisations are collected in groups by their number modulo this prime;
+ * fewer realisations are groups of their own.  A mean over groups varies between draws
+ * like one over their realisations; the spread of 251 of them is known to 4 %. */
+enum { GROUPS = 251 };
 
 /* Particles of a group of realisations in one step. */
-struct group_cell {
-	size_t group;
-	long step;
+struct shed {
 	double count, large;
 };
 
@@ -39,10 +35,11 @@ struct class
 	struct running volume, steps;
 	double product;      /* sum of their products about their means */
 	struct running cell; /* over realisations and steps: volume */
-	struct group_cell *group_cell;
-	size_t ncells, cell_room, nhistories, per_group;
-	double ngroups, empty_groups; /* with and without particles */
-	double *times; /* how often each was drawn for the present replicate */
+	long nhistories;
+	struct shed *shed; /* [shed_steps][GROUPS] */
+	long shed_steps;
+	long groups, first_group;
+	double times[GROUPS]; /* how often each was drawn for the present replicate */
 	/* Of a closed class. */
 	double realisations, error, skewness; /* error: relative, of the mean */
 	struct moments all, now;
@@ -52,12 +49,11 @@ struct partition {
 	double fragment_area, area, zone;
 	long first_step;
 	int sizes;
-	struct class class[PARTITION_CLASSES_MAX]; /* in order of pressure once closed */
-	int order[PARTITION_CLASSES_MAX];          /* order[place] = the caller's index */
+	struct class class[PARTITION_CLASSES_MAX];
+	int order[PARTITION_CLASSES_MAX]; /* classes by pressure once closed */
 	int nclasses, culprit;
 	long culprit_realisation;
 	long steps;
-	double *particles; /* particles and large particles, [class][step] */
 };
 
 struct partition *partition_new(double area, long first_step, int sizes)
@@ -78,54 +74,36 @@ void partition_free(struct partition *p)
 		return;
 	for (int c = 0; c < p->nclasses; c++) {
 		realisations_free(p->class[c].reader);
-		free(p->class[c].group_cell);
-		free(p->class[c].times);
+		free(p->class[c].shed);
 	}
-	free(p->particles);
 	free(p);
 }
 
-static int compare_groups(const void *a, const void *b)
-{
-	const struct group_cell *x = a, *y = b;
-
-	if (x->group != y->group)
-		return x->group < y->group ? -1 : 1;
-	return (x->step > y->step) - (x->step < y->step);
-}
-
-static void merge_groups(struct class *c)
-{
-	size_t n = 0;
-
-	for (size_t i = 0; i < c->ncells; i++)
-		c->group_cell[i].group /= 2;
-	qsort(c->group_cell, c->ncells, sizeof *c->group_cell, compare_groups);
-	for (size_t i = 0; i < c->ncells; i++) {
-		if (n && compare_groups(&c->group_cell[n - 1], &c->group_cell[i]) == 0) {
-			c->group_cell[n - 1].count += c->group_cell[i].count;
-			c->group_cell[n - 1].large += c->group_cell[i].large;
-		} else {
-			c->group_cell[n++] = c->group_cell[i];
-		}
-	}
-	c->ncells = n;
-	c->per_group *= 2;
-}
-
+/* Adds the particles of a realisation to its group; those that are missing from a
+ * particle table count. */
 static enum num_status group_sizes(
 	struct class *c, const struct realisation_cell *cell, size_t n)
 {
-	size_t group = c->nhistories / c->per_group;
+	long group = (c->sparse ? cell->realisation : c->nhistories) % GROUPS,
+	     steps = cell[n - 1].step;
+	size_t row = GROUPS * sizeof *c->shed;
 
-	if (room_for(&c->group_cell, &c->cell_room, c->ncells + n, sizeof *c->group_cell))
-		return NUM_MEMORY;
-	for (size_t i = 0; i < n; i++)
-		c->group_cell[c->ncells++] = (struct group_cell){ group, cell[i].step,
-			cell[i].count, cell[i].large };
-	if (group + 1 >= GROUPS_MOST ||
-		(c->ncells > GROUP_CELLS && group + 1 > GROUPS_LEAST))
-		merge_groups(c);
+	if (steps > c->shed_steps) {
+		struct shed *more = realloc(c->shed, (size_t)steps * row);
+
+		if (!more)
+			return NUM_MEMORY;
+		memset(more + c->shed_steps * GROUPS, 0,
+			(size_t)(steps - c->shed_steps) * row);
+		c->shed = more;
+		c->shed_steps = steps;
+	}
+	for (size_t i = 0; i < n; i++) {
+		struct shed *s = &c->shed[(cell[i].step - 1) * GROUPS + group];
+
+		s->count += cell[i].count;
+		s->large += cell[i].large;
+	}
 	return NUM_OK;
 }
 
@@ -177,8 +155,7 @@ enum partition_status partition_class(
 		.sparse = sparse,
 		.pressure = pressure,
 		.area = area,
-		.last_realisation = -1,
-		.per_group = 1 };
+		.last_realisation = -1 };
 	c->reader = realisations_new(REALISATIONS_ROOM, take_history, c);
 	if (!c->reader)
 		return PARTITION_MEMORY;
@@ -257,25 +234,19 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	if (c->all.mean > 0)
 		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
 	c->skewness = fmax(0, running_skewness(&c->volume));
-	c->ngroups = ceil((double)c->nhistories / (double)c->per_group);
-	c->empty_groups = empty / (double)c->per_group;
-	if (p->sizes)
-		c->times = calloc((size_t)c->ngroups, sizeof *c->times);
-	return p->sizes && !c->times ? PARTITION_MEMORY : PARTITION_OK;
+	c->groups = (long)fmin(c->realisations, GROUPS);
+	c->first_group = c->sparse ? c->lowest % GROUPS : 0;
+	return PARTITION_OK;
 }
 
-/* Sorts the classes by pressure, keeping the caller's numbers in order[]. */
 static void sort_classes(struct partition *p)
 {
 	for (int i = 0; i < p->nclasses; i++) {
-		struct class moved = p->class[i];
 		int k = i;
 
-		for (; k > 0 && p->class[k - 1].pressure > moved.pressure; k--) {
-			p->class[k] = p->class[k - 1];
+		for (; k > 0 && p->class[p->order[k - 1]].pressure > p->class[i].pressure;
+			k--)
 			p->order[k] = p->order[k - 1];
-		}
-		p->class[k] = moved;
 		p->order[k] = i;
 	}
 }
@@ -301,7 +272,7 @@ static enum partition_status share_area(struct partition *p, double transition)
 	}
 	if (!given) {
 		p->zone = transition * p->area;
-		p->class[0].area = p->class[p->nclasses - 1].area =
+		p->class[p->order[0]].area = p->class[p->order[p->nclasses - 1]].area =
 			(p->area - p->zone) / 2;
 		return PARTITION_OK;
 	}
@@ -333,16 +304,10 @@ enum partition_status partition_close(
 			return status;
 	}
 	sort_classes(p);
-	for (int c = 1; c < p->nclasses; c++) {
-		p->culprit = p->order[c];
-		if (p->class[c].pressure == p->class[c - 1].pressure)
+	for (int k = 1; k < p->nclasses; k++) {
+		p->culprit = p->order[k];
+		if (p->class[p->culprit].pressure == p->class[p->order[k - 1]].pressure)
 			return PARTITION_PRESSURE;
-	}
-	if (p->sizes) {
-		p->particles = calloc(
-			2 * (size_t)p->nclasses * (size_t)p->steps, sizeof *p->particles);
-		if (!p->particles)
-			return PARTITION_MEMORY;
 	}
 	return share_area(p, transition);
 }
@@ -359,12 +324,8 @@ long partition_realisation(const struct partition *p)
 
 double partition_count(const struct partition *p, int class, double *mean)
 {
-	int place = 0;
-
-	while (p->order[place] != class)
-		place++;
-	*mean = p->class[place].all.mean;
-	return p->class[place].realisations;
+	*mean = p->class[class].all.mean;
+	return p->class[class].realisations;
 }
 
 double partition_power_mean(double p0, double y0, double p1, double y1)
@@ -397,14 +358,18 @@ static void add_area(struct partition_wear *wear, const struct moments *m, doubl
 /* Mean over the linear zone of a quantity known at each class. */
 static double zone_mean(const struct partition *p, const double *y)
 {
-	double sum = 0;
-	int n = p->nclasses;
+	const int *at = p->order;
+	int last = p->nclasses - 1;
+	double sum = 0, span = p->class[at[last]].pressure - p->class[at[0]].pressure;
 
-	for (int c = 0; c + 1 < n; c++)
-		sum += (p->class[c + 1].pressure - p->class[c].pressure) *
-		       partition_power_mean(p->class[c].pressure, y[c],
-			       p->class[c + 1].pressure, y[c + 1]);
-	return sum / (p->class[n - 1].pressure - p->class[0].pressure);
+	for (int k = 0; k < last; k++) {
+		double low = p->class[at[k]].pressure,
+		       high = p->class[at[k + 1]].pressure;
+
+		sum += (high - low) *
+		       partition_power_mean(low, y[at[k]], high, y[at[k + 1]]);
+	}
+	return sum / span;
 }
 
 /* Component from the present moments of the classes. */
@@ -437,7 +402,7 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 		struct class *k = &p->class[c];
 
 		k->now = k->all;
-		for (size_t i = 0; k->times && i < (size_t)k->ngroups; i++)
+		for (int i = 0; i < GROUPS; i++)
 			k->times[i] = 1;
 	}
 	integrate(p, parts, wear);
@@ -463,30 +428,22 @@ static double draw_mean(const struct class *c, gsl_rng *rng)
 	return fmax(exp(fmin(more - t, 200)), least_draw);
 }
 
-/* Resamples the groups with replacement.  Only groups with particles are drawn one by
- * one; the number of such draws is binomial, or Poisson if the other groups are too many
- * to count. */
+/* Resamples the groups with replacement. */
 static void draw_groups(struct class *c, gsl_rng *rng)
 {
-	size_t n = (size_t)c->ngroups;
-	double all = c->ngroups + c->empty_groups;
-	unsigned int drawn = (unsigned int)n;
-
-	if (c->empty_groups > 0 && all < UINT_MAX)
-		drawn = gsl_ran_binomial(rng, c->ngroups / all, (unsigned int)all);
-	else if (c->empty_groups > 0)
-		drawn = gsl_ran_poisson(rng, c->ngroups);
-	for (size_t i = 0; i < n; i++)
-		c->times[i] = 0;
-	for (unsigned int i = 0; i < drawn; i++)
-		c->times[gsl_rng_uniform_int(rng, (unsigned long)n)]++;
+	memset(c->times, 0, sizeof c->times);
+	for (long i = 0; i < c->groups; i++)
+		c->times[(c->first_group + (long)gsl_rng_uniform_int(
+						   rng, (unsigned long)c->groups)) %
+			 GROUPS]++;
 }
 
 void partition_replicate(
 	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear)
 {
+	/* by pressure, so that the order of the tables does not matter */
 	for (int c = 0; c < p->nclasses; c++) {
-		struct class *k = &p->class[c];
+		struct class *k = &p->class[p->order[c]];
 		double ratio = draw_mean(k, rng);
 
 		k->now.mean = ratio * k->all.mean;
@@ -498,44 +455,46 @@ void partition_replicate(
 	integrate(p, parts, wear);
 }
 
-/* Particles and large ones that one fragment of a class sheds in each step. */
-static void add_particles(const struct class *c, double *count, double *large)
+/* Particles that one fragment of a class sheds in a step, from 0. */
+static struct shed shed_in(const struct class *c, long step)
 {
-	for (size_t i = 0; i < c->ncells; i++) {
-		const struct group_cell *k = &c->group_cell[i];
-		double share = c->times[k->group] / c->realisations;
+	struct shed sum = { 0 };
 
-		count[k->step - 1] += share * k->count;
-		large[k->step - 1] += share * k->large;
+	for (int i = 0; i < GROUPS && step < c->shed_steps; i++) {
+		const struct shed *s = &c->shed[step * GROUPS + i];
+
+		sum.count += c->times[i] / c->realisations * s->count;
+		sum.large += c->times[i] / c->realisations * s->large;
 	}
+	return sum;
 }
 
 /* Area-weighted sum over classes and zone of what fragments shed. */
-static double whole(const struct partition *p, const double *per_class, long step)
+static double whole(const struct partition *p, const double *per_class)
 {
-	double y[PARTITION_CLASSES_MAX], sum = 0;
+	double sum = 0;
 
-	for (int c = 0; c < p->nclasses; c++) {
-		y[c] = per_class[c * p->steps + step];
-		sum += p->class[c].area * y[c];
-	}
-	return p->zone > 0 ? sum + p->zone * zone_mean(p, y) : sum;
+	for (int c = 0; c < p->nclasses; c++)
+		sum += p->class[c].area * per_class[c];
+	return p->zone > 0 ? sum + p->zone * zone_mean(p, per_class) : sum;
 }
 
 long partition_large(struct partition *p, double probability, int cumulative)
 {
-	size_t n = (size_t)p->nclasses * (size_t)p->steps;
-	double *count = p->particles, *large = count + n, all = 0, all_large = 0;
+	double count[PARTITION_CLASSES_MAX], large[PARTITION_CLASSES_MAX], all = 0,
+									   all_large = 0;
 
-	for (size_t i = 0; i < 2 * n; i++)
-		p->particles[i] = 0;
-	for (int c = 0; c < p->nclasses; c++)
-		add_particles(&p->class[c], count + c * p->steps, large + c * p->steps);
-	for (long s = 0; s < p->steps; s++) {
-		all = (cumulative ? all : 0) + whole(p, count, s);
-		all_large = (cumulative ? all_large : 0) + whole(p, large, s);
+	for (long step = 0; step < p->steps; step++) {
+		for (int c = 0; c < p->nclasses; c++) {
+			struct shed s = shed_in(&p->class[c], step);
+
+			count[c] = s.count;
+			large[c] = s.large;
+		}
+		all = (cumulative ? all : 0) + whole(p, count);
+		all_large = (cumulative ? all_large : 0) + whole(p, large);
 		if (all > 0 && all_large >= probability * all)
-			return s + 1;
+			return step + 1;
 	}
 	return 0;
 }

@@ -69,7 +69,7 @@ enum partition_status {
 /* area: of the component, m2, > 0.  first_step: earlier steps are running-in; they count
  * for the large particles but not for the rate.  sizes: 1 if partition_large() will be
  * called.  NULL when out of memory.  The memory in use does not grow with the number of
- * rows or realisations. */
+ * rows or realisations; with sizes it is 4 kB for each step of a class. */
 struct partition *partition_new(double area, long first_step, int sizes);
 void partition_free(struct partition *p);
 
@@ -117,7 +117,7 @@ struct partition_wear {
  * zone; 0: as many as fragments fit; 1: each class wears as one fragment. */
 void partition_estimate(struct partition *p, double parts, struct partition_wear *wear);
 /* Wear from means drawn by rng as above, with scatter in proportion to them.  If sizes
- * was 1, whole realisations (from 4096 on in groups) are resampled and kept for
+ * was 1, whole realisations (more than 251 of them in groups) are resampled and kept for
  * partition_large(). */
 void partition_replicate(
 	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear);

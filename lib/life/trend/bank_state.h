@@ -62,6 +62,8 @@ struct bank {
 	double unit;            /* of time: the mean of the first two gaps */
 	double first, last;     /* times without the idle time */
 	double idle;            /* total idle time */
+	double seen;            /* time of the last row, with the idle time */
+	double previous;        /* gap before it, with the idle time, in units */
 	double age, gap;        /* of the last row, mean gap, in units */
 	double squares;         /* sum of the squares of all gaps, with halts, units^2 */
 	double longest;         /* of these gaps */

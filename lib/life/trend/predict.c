@@ -94,7 +94,8 @@ static enum num_status draw_grey(struct predict *p, double *life)
 		double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z;
 		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
 			       rate * (g.tail - g.fit.mean_x);
-		double now = grey_curve(level, rate, g.span, g.span / (g.n - 1));
+		double now = grey_curve(
+			lanes_all(level), lanes_all(rate), g.span, g.span / (g.n - 1))[0];
 
 		life[i] = p->par.bank.direction * (now - limit) >= 0
 				  ? 0

@@ -113,3 +113,48 @@ enum num_status align_autocorrelation(
 	fft_free(part);
 	return status;
 }
+
+/* Correlation coefficient of a at lags 1 to most and b at lags w times as long. */
+static double likeness(const double *a, const double *b, size_t most, double w)
+{
+	double x = 0, y = 0, xx = 0, yy = 0, xy = 0, n = (double)most;
+
+	for (size_t k = 1; k <= most; k++) {
+		double at = w * (double)k, u = at - floor(at);
+		size_t i = (size_t)at;
+		double v = (1 - u) * b[i] + u * b[i + 1];
+
+		x += a[k];
+		y += v;
+		xx += a[k] * a[k];
+		yy += v * v;
+		xy += a[k] * v;
+	}
+	return (xy - x * y / n) / sqrt((xx - x * x / n) * (yy - y * y / n));
+}
+
+enum num_status align_width(
+	const double *y1, const double *y2, size_t n, double most, double *width)
+{
+	enum { STEPS = 100 };
+	size_t lags = (size_t)most, all = (size_t)(2 * most) + 2;
+	double *r = fft_alloc(2 * (all + 1)), *r2 = r + all + 1, best = -1;
+	enum num_status status = r ? NUM_OK : NUM_MEMORY;
+
+	*width = 1;
+	if (status == NUM_OK && lags > 1 && all < n)
+		status = correlate(y1, y1, n, all, r);
+	if (status == NUM_OK && lags > 1 && all < n)
+		status = correlate(y2, y2, n, all, r2);
+	/* from 1/2 to 2 */
+	for (int k = -STEPS; status == NUM_OK && lags > 1 && all < n && k <= STEPS; k++) {
+		double w = exp2((double)k / STEPS), here = likeness(r, r2, lags, w);
+
+		if (here > best) {
+			best = here;
+			*width = w;
+		}
+	}
+	fft_free(r);
+	return status;
+}

@@ -31,4 +31,9 @@ enum num_status align_elsewhere(const double *y1, const double *y2, size_t n,
 enum num_status align_autocorrelation(
 	const double *y1, const double *y2, size_t n, size_t max_lag, double *r);
 
+/* *width: of the pulses in y2 over that of those in y1, as that of their autocorrelations
+ * up to lag most, which superposition of many hardly changes; 1 if there is none. */
+enum num_status align_width(
+	const double *y1, const double *y2, size_t n, double most, double *width);
+
 #endif

@@ -8,13 +8,16 @@ static size_t filter_residual(struct joint *j, size_t stride)
 {
 	const struct joint_scene *s = &j->scene;
 	size_t len, points = (j->n + stride - 1) / stride;
-	long first = shape_support(s->shape, 0, s->duration, &len);
 
-	shape_sample(s->shape, 0, s->duration, first, len, j->scratch, NULL, NULL);
-	for (int c = 0; c < 2; c++)
+	for (int c = 0; c < 2; c++) {
+		double T = joint_duration(s, 0, c);
+		long first = shape_support(s->shape, 0, T, &len);
+
+		shape_sample(s->shape, 0, T, first, len, j->scratch, NULL, NULL);
 		for (size_t k = 0; k < points; k++)
 			j->filter[c][k] = dot_within(j->scratch, len, j->r[c], j->n,
 				(long long)(k * stride) + first);
+	}
 	return points;
 }
 

@@ -5,13 +5,14 @@
  *	y1(n) = sum_i a_i p((n - t_i) / T_i) + tones + noise
  *	y2(n) = sum_i g a_i p((n - t_i - delta_i) / T_i) + tones + noise
  *
- * where T_i = duration (1 + delta_i / transit): a slow particle has a long pulse.  Pulses
- * are found one by one where the matched filter of the residual is largest, each followed
- * by a Levenberg-Marquardt fit of it and its neighbours with exact derivatives
- * (orthogonal matching pursuit with Newton steps: Mamandipoor, Ramasamy, Madhow, IEEE
- * Trans. Signal Process. 64, 2016), until no further pulse reduces chi-square enough;
- * then all are fitted together.  Tones and offset are linear and are projected out
- * exactly, as far as they are not known beforehand.
+ * where T_i = duration (1 + delta_i / transit), width times as much in y2: a slow
+ *particle has a long pulse, and one coil may be wider than the other.  Pulses are found
+ *one by one where the matched filter of the residual is largest, each followed by a
+ *Levenberg-Marquardt fit of it and its neighbours with exact derivatives (orthogonal
+ *matching pursuit with Newton steps: Mamandipoor, Ramasamy, Madhow, IEEE Trans. Signal
+ *Process. 64, 2016), until no further pulse reduces chi-square enough; then all are
+ *fitted together.  Tones and offset are linear and are projected out exactly, as far as
+ *they are not known beforehand.
  *
  * The solver uses only samples that pulses touch, and its steps stay within the range of
  * delta.  To the same chi-square gsl_multifit_nlinear, which needs the whole Jacobian,
@@ -36,6 +37,7 @@ struct joint_scene {
 	double duration; /* T of a particle with delta = 0 */
 	double transit;  /* from sensor to sensor at delta = 0; INFINITY: one T */
 	double gain;     /* g > 0 */
+	double width;    /* of the pulses of sensor 2, over those of sensor 1 */
 	double delta_min, delta_max; /* range of delta */
 	double threshold;            /* by how much a pulse must reduce chi-square ... */
 	double threshold_near; /* ... where it overlaps others: the search is narrower */
@@ -64,16 +66,16 @@ struct joint_scene {
 	const unsigned char *hidden[2];
 };
 
-/* T of a particle with this delta. */
-static inline double joint_duration(const struct joint_scene *s, double delta)
+/* Duration of the pulse of a particle with this delta on channel c. */
+static inline double joint_duration(const struct joint_scene *s, double delta, int c)
 {
-	return s->duration * (1 + delta / s->transit);
+	return s->duration * (1 + delta / s->transit) * (c ? s->width : 1);
 }
 
 /* Energy of a pulse of amplitude 1 on both channels, in units of the noise. */
 static inline double joint_energy(const struct joint_scene *s)
 {
-	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
+	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain * s->width);
 }
 
 struct joint_pulse {

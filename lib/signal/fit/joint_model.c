@@ -71,7 +71,8 @@ static enum joint_status reserve_samples(struct joint *j, size_t n)
 enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s)
 {
 	double longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
-	double length = 2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0));
+	double length = 2 * shape_reach(s->shape) * fmax(s->width, 1) *
+			joint_duration(s, fmax(longest, 0), 0);
 	size_t support = (size_t)(length + 0.4 * s->duration) + 4;
 	double *at;
 
@@ -297,7 +298,7 @@ size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)
 static long pulse_window(const struct joint_scene *s, const struct joint_pulse *p, int c,
 	size_t n, size_t *len)
 {
-	double T = joint_duration(s, p->delta);
+	double T = joint_duration(s, p->delta, c);
 	long first = shape_support(s->shape, p->t + (c ? p->delta : 0), T, len);
 	long last = first + (long)*len;
 
@@ -318,7 +319,8 @@ void joint_subtract(struct joint *j, const struct joint_pulse *p, double sign)
 		long first = pulse_window(s, p, c, j->n, &len);
 
 		shape_sample(s->shape, p->t + (c ? p->delta : 0),
-			joint_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
+			joint_duration(s, p->delta, c), first, len, j->scratch, NULL,
+			NULL);
 		joint_hide(j, c, first, len, j->scratch);
 		if (len)
 			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
@@ -361,10 +363,11 @@ void joint_make_columns(struct joint *j, int i)
 {
 	const struct joint_scene *s = &j->scene;
 	const struct joint_pulse *p = &j->pulse[i];
-	double T = joint_duration(s, p->delta), stretch = s->duration / s->transit;
 
 	for (int c = 0; c < 2; c++) {
 		struct column *col = &j->col[i][c];
+		double T = joint_duration(s, p->delta, c);
+		double stretch = joint_duration(s, 0, c) / s->transit;
 		double a = p->a * (c ? s->gain : 1), *by_t, *by_T;
 
 		col->first = pulse_window(s, p, c, j->n, &col->n);
@@ -386,12 +389,12 @@ static int scene_is_sane(
 	const struct joint_scene *s, const struct joint_pulse *pulses, int m)
 {
 	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
-		!(s->delta_min <= s->delta_max) || !(s->threshold >= 0) ||
-		!(s->threshold_near >= 0) || !(s->tone_variance >= 0) ||
-		!(s->tone_hop >= 0) || s->tones < 0 || !(s->low >= 0) ||
-		!(s->lost >= 0) || !(s->lost < 1) || s->tones > JOINT_TONES_MAX ||
-		s->max_pulses < 0 || s->max_pulses > JOINT_PULSES_MAX || m < 0 ||
-		m > s->max_pulses)
+		!(s->width > 0) || !(s->delta_min <= s->delta_max) ||
+		!(s->threshold >= 0) || !(s->threshold_near >= 0) ||
+		!(s->tone_variance >= 0) || !(s->tone_hop >= 0) || s->tones < 0 ||
+		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
+		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
+		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
 	/* The tolerance of moved() must keep T positive. */
 	if (s->delta_min - JOINT_BEYOND * (s->delta_max - s->delta_min) <= -s->transit)
@@ -444,10 +447,11 @@ const double *joint_residual(const struct joint *j, int channel)
 void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double sign,
 	double *y1, double *y2, size_t n)
 {
-	double T = joint_duration(s, p->delta), part[64];
+	double part[64];
 
 	for (int c = 0; c < 2; c++) {
 		double *y = c ? y2 : y1, t0 = p->t + (c ? p->delta : 0);
+		double T = joint_duration(s, p->delta, c);
 		size_t len, chunk;
 		long first = pulse_window(s, p, c, n, &len);
 

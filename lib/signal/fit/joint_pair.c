@@ -25,7 +25,7 @@ static long make_excess(
 	const struct joint_scene *s = &j->scene;
 	const struct joint_pulse *p = &j->pulse[i];
 	const struct column *one = &j->col[i][c];
-	double T = joint_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
+	double T = joint_duration(s, p->delta, c), t0 = p->t + (c ? p->delta : 0);
 	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
 	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
 

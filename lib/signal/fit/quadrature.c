@@ -34,17 +34,17 @@ enum num_status quadrature_measure(struct quadrature *q, const double *const x[2
 		return NUM_MEMORY;
 	work = sum + n;
 	for (int c = 0; c < 2; c++) {
-		double one = robust_noise(x[c], n, work),
-		       two = robust_noise(v[c], n, work), plus, minus, r;
+		double one = robust_noise(x[c], NULL, n, work),
+		       two = robust_noise(v[c], NULL, n, work), plus, minus, r;
 
 		if (!(one > 0) || !(two > 0)) /* too short or without noise */
 			one = two = 1;
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one + v[c][i] / two;
-		plus = robust_noise(sum, n, work);
+		plus = robust_noise(sum, NULL, n, work);
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one - v[c][i] / two;
-		minus = robust_noise(sum, n, work);
+		minus = robust_noise(sum, NULL, n, work);
 		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
 		/* limited: the difference of equal components would have no error */
 		q->correlation[c] = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;

@@ -57,6 +57,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.duration = c->duration,
 		.transit = c->transit,
 		.gain = fabs(c->gain) * c->noise[0] / c->noise[1],
+		.width = c->width,
 		.delta_min = c->delta_min,
 		.delta_max = c->delta_max,
 		.threshold = c->threshold,

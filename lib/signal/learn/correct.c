@@ -45,7 +45,8 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 		for (int p = 0; p < 2 * e->m; p++) {
 			const struct joint_pulse *pulse = &e->pulse[p / 2];
 			const double *r = joint_residual(ex->joint, p % 2);
-			double stretch = 1 + pulse->delta / ex->scene.transit;
+			double stretch = (1 + pulse->delta / ex->scene.transit) *
+					 (p % 2 ? ex->scene.width : 1);
 			double t0 = pulse->t + (p % 2 ? pulse->delta : 0);
 			double a = pulse->a * (p % 2 ? ex->scene.gain : 1);
 

@@ -160,8 +160,8 @@ static enum separate_status set_single(const struct examples *ex, const double *
 	struct template one = { 0 };
 	double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration);
 
-	if (template_single(&one, y1, y2, ex->hidden, n, c->duration, c->transit, reach,
-		    guess->single) != NUM_OK)
+	if (template_single(&one, y1, y2, ex->hidden, n, c->duration, c->transit,
+		    c->width, reach, guess->single) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!one.shape)
 		return SEPARATE_HARD;
@@ -364,6 +364,7 @@ static enum separate_status converge(
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = ex->scene.duration;
 		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
+		c->width = ex->scene.width;
 		if (c->whitening.tap && moved > 1e-3 && !c->measured) {
 			if (learn_set_shape(c, c->pulse) != NUM_OK)
 				return SEPARATE_MEMORY;
@@ -377,6 +378,59 @@ static enum separate_status converge(
 			break;
 	}
 	return SEPARATE_OK;
+}
+
+/* Chi-square with this width.  Mean duration and energy at sensor 2 are kept: duration
+ * and gain that go with the width then hardly change with it. */
+static double chi2_of_width(
+	const struct calibrate_par *par, struct examples *ex, double width)
+{
+	double change = sqrt(width / ex->scene.width);
+
+	ex->scene.width = width;
+	ex->scene.duration /= isnan(par->duration) ? change : 1;
+	ex->scene.gain /= isnan(par->gain) ? change : 1;
+	return examples_chi2(ex, 0);
+}
+
+/* Adjusts the width of the pulses of sensor 2 to the least chi-square, by a parabola; 1
+ * if it has changed.  Coils are made alike: a difference has to reduce chi-square by more
+ * than noise, and what the shape leaves, would. */
+static int tune_width(const struct calibrate_par *par, struct examples *ex)
+{
+	const double step = 0.01, small = 5e-4, before = ex->scene.width;
+	const struct joint_scene scene = ex->scene;
+	double middle = examples_chi2(ex, 0), best, move, width;
+	double below = chi2_of_width(par, ex, before * exp(-step));
+	double above = chi2_of_width(par, ex, before * exp(step));
+
+	move = 0.5 * (below - above) / (below - 2 * middle + above);
+	move = below + above > 2 * middle ? fmax(fmin(move, 2), -2)
+	       : below < above            ? -1
+					  : 1;
+	width = before * exp(step * move);
+	best = chi2_of_width(par, ex, width);
+	if (chi2_of_width(par, ex, 1) - best >
+		SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
+		chi2_of_width(par, ex, width);
+	if (fabs(log(ex->scene.width / before)) > small)
+		return 1;
+	ex->scene = scene;
+	return 0;
+}
+
+/* Adjusts all parameters. */
+static enum separate_status settle(
+	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+{
+	enum { ROUNDS = 6 };
+	enum separate_status status = converge(par, ex, c);
+
+	for (int k = 0; k < ROUNDS && status == SEPARATE_OK && !ex->pieces &&
+			ex->status == SEPARATE_OK && tune_width(par, ex);
+		k++)
+		status = converge(par, ex, c);
+	return status;
 }
 
 /* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
@@ -444,7 +498,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
 		if (ex.count)
-			status = converge(par, &ex, c);
+			status = settle(par, &ex, c);
 	}
 	if (status == SEPARATE_OK && ex.count && wants_correction(par, &ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)

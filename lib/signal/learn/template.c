@@ -39,13 +39,14 @@ struct search {
 	const double *y[2];
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	size_t n;
-	double T, transit, reach;
-	int q;          /* samples per point of the coarse grid */
-	double *z[2];   /* coarse records, noise 1 */
-	size_t points;  /* of them */
-	int half;       /* of the template, samples */
-	double *p;      /* 2 half + 1: the template */
-	double *coarse; /* the same on the coarse grid */
+	double T, transit, reach, width;
+	int q;             /* samples per point of the coarse grid */
+	double *z[2];      /* coarse records, noise 1 */
+	size_t points;     /* of them */
+	int half;          /* of the template, samples */
+	double *p;         /* 2 half + 1: the template */
+	double *wide;      /* the same as sensor 2 has it, width times as long */
+	double *coarse[2]; /* either on the coarse grid */
 	int coarse_half;
 	double scatter; /* standard error of a point of the template */
 	struct event event[TEMPLATE_EVENTS];
@@ -217,25 +218,31 @@ static double between(const double *x, size_t n, double t)
 			   u * (0.5 * (a + c) - b + u * ((d - a) / 6 + 0.5 * (b - c))));
 }
 
+/* By how much an event is longer on a channel than the template. */
+static double stretch_of(const struct search *s, const struct event *e, int channel)
+{
+	return (1 + (e->t[1] - e->t[0]) / s->transit) * (channel ? s->width : 1);
+}
+
 /* Arrival and amplitude of an event on one channel by the template, near at. */
 static void measure_event(
 	const struct search *s, struct event *e, int channel, double at, double range)
 {
-	const double *y = s->y[channel];
-	double energy = dot(s->p, s->p, 2 * (size_t)s->half + 1), v[3];
+	const double *y = s->y[channel], *p = channel ? s->wide : s->p;
+	double energy = dot(p, p, 2 * (size_t)s->half + 1), v[3];
 	long middle = (long)(at / s->q + 0.5), lag, near;
 	double move = 0, bend;
 
-	lag = best_lag(s->coarse, s->coarse_half, s->z[channel], s->points, middle,
-		(long)(range / s->q) + 1, &v[0]);
+	lag = best_lag(s->coarse[channel], s->coarse_half, s->z[channel], s->points,
+		middle, (long)(range / s->q) + 1, &v[0]);
 	near = (middle + lag) * s->q + s->q / 2;
-	near += best_lag(s->p, s->half, y, s->n, near, s->q + 1, &v[1]);
+	near += best_lag(p, s->half, y, s->n, near, s->q + 1, &v[1]);
 	if (near - s->half < 1 || near + s->half + 2 > (long)s->n) {
 		e->a[channel] = 0;
 		return;
 	}
-	v[0] = dot(s->p, y + near - 1 - s->half, 2 * (size_t)s->half + 1);
-	v[2] = dot(s->p, y + near + 1 - s->half, 2 * (size_t)s->half + 1);
+	v[0] = dot(p, y + near - 1 - s->half, 2 * (size_t)s->half + 1);
+	v[2] = dot(p, y + near + 1 - s->half, 2 * (size_t)s->half + 1);
 	bend = v[0] - 2 * v[1] + v[2];
 	if (fabs(bend) > 0)
 		move = 0.5 * (v[0] - v[2]) / bend;
@@ -252,7 +259,7 @@ static double left_over(const struct search *s, const struct event *e)
 	double sum = 0, energy = 0;
 
 	for (int c = 0; c < 2; c++) {
-		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit;
+		double stretch = stretch_of(s, e, c);
 		double mean = 0, slope = 0, n = 2 * s->half + 1;
 
 		for (int k = -s->half; k <= s->half; k++) {
@@ -277,11 +284,12 @@ static void average(struct search *s)
 	memset(s->p, 0, (2 * (size_t)s->half + 1) * sizeof *s->p);
 	for (int i = 0; i < s->count; i++) {
 		const struct event *e = &s->event[i];
-		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit;
 
 		if (!e->like)
 			continue;
 		for (int c = 0; c < 2; c++) {
+			double stretch = stretch_of(s, e, c);
+
 			weight += e->a[c] * e->a[c];
 			for (int k = -s->half; k <= s->half; k++)
 				s->p[k + s->half] +=
@@ -294,20 +302,28 @@ static void average(struct search *s)
 	s->scatter = 1 / sqrt(weight);
 }
 
-/* Computes the coarse template: the fine one at the centres of the coarse points. */
-static void coarsen_template(struct search *s)
+/* Computes the template of sensor 2, and the coarse ones: the fine ones at the centres
+ * of the coarse points. */
+static void spread_template(struct search *s)
 {
-	for (int k = -s->coarse_half; k <= s->coarse_half; k++) {
-		double sum = 0;
+	size_t n = 2 * (size_t)s->half + 1;
 
-		for (int i = 0; i < s->q; i++) {
-			int at = k * s->q + i - s->q / 2 + s->half;
+	memcpy(s->wide, s->p, n * sizeof *s->wide);
+	for (int k = -s->half; k <= s->half && s->width != 1; k++)
+		s->wide[k + s->half] = between(s->p, n, s->half + k / s->width);
+	for (int c = 0; c < 2; c++)
+		for (int k = -s->coarse_half; k <= s->coarse_half; k++) {
+			const double *p = c ? s->wide : s->p;
+			double sum = 0;
 
-			if (at >= 0 && at <= 2 * s->half)
-				sum += s->p[at];
+			for (int i = 0; i < s->q; i++) {
+				int at = k * s->q + i - s->q / 2 + s->half;
+
+				if (at >= 0 && at <= 2 * s->half)
+					sum += p[at];
+			}
+			s->coarse[c][k + s->coarse_half] = sum / sqrt(s->q);
 		}
-		s->coarse[k + s->coarse_half] = sum / sqrt(s->q);
-	}
 }
 
 /* Takes the template from one event, in its own units. */
@@ -317,7 +333,7 @@ static void take_first(struct search *s, struct event *e)
 
 	for (int k = -s->half; k <= s->half; k++)
 		s->p[k + s->half] = s->y[0][(long)at + k];
-	coarsen_template(s);
+	spread_template(s);
 	measure_event(s, e, 0, at, s->T);
 	measure_event(s, e, 1, e->t[0], s->reach);
 	stretch += (e->t[1] - e->t[0]) / s->transit;
@@ -351,7 +367,7 @@ static int refine(struct search *s, int best)
 
 	take_first(s, &s->event[best]);
 	for (int round = 0; round < ROUNDS; round++) {
-		coarsen_template(s);
+		spread_template(s);
 		for (int i = 0; i < s->count; i++) {
 			struct event *e = &s->event[i];
 
@@ -427,11 +443,13 @@ static enum num_status check_widths(struct search *s, int white, int *one, int *
 	orthogonalise(work, BASE, d, n);
 	for (int i = 0; i < s->count; i++) {
 		const struct event *e = &s->event[i];
-		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit, z = 0, a2 = 0;
+		double z = 0, a2 = 0;
 
 		if (!e->like)
 			continue;
 		for (int c = 0; c < 2; c++) {
+			double stretch = stretch_of(s, e, c);
+
 			for (int k = -s->half; k <= s->half; k++)
 				r[k + s->half] =
 					between(s->y[c], s->n, e->t[c] + k * stretch);
@@ -624,7 +642,7 @@ static int take_single(struct search *s, int number)
 		return 0;
 	e->like = 1;
 	average(s);
-	coarsen_template(s);
+	spread_template(s);
 	for (int c = 0; c < 2; c++)
 		measure_event(s, e, c, e->t[c], 0);
 	average(s);
@@ -678,13 +696,14 @@ static enum num_status search_template(struct search *s, int single, struct temp
 /* As the functions of template.h; single -1: by events that are alike. */
 static enum num_status find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double reach, int single)
+	double width, double reach, int single)
 {
 	struct search s = { .y = { y1, y2 },
 		.hidden = { hidden[0], hidden[1] },
 		.n = n,
 		.T = duration,
 		.transit = transit,
+		.width = width,
 		.reach = reach,
 		.q = duration > 2 * COARSE ? (int)(duration / COARSE) : 1 };
 	size_t length;
@@ -697,12 +716,14 @@ static enum num_status find(struct template *t, const double *y1, const double *
 	length = 2 * (size_t)s.half + 1;
 	if ((double)n < 20 * duration)
 		return NUM_OK;
-	s.z[0] = malloc((2 * s.points + 2 * length) * sizeof *s.z[0]);
+	s.z[0] = malloc((2 * s.points + 4 * length) * sizeof *s.z[0]);
 	if (!s.z[0])
 		return NUM_MEMORY;
 	s.z[1] = s.z[0] + s.points;
 	s.p = s.z[1] + s.points;
-	s.coarse = s.p + length;
+	s.wide = s.p + length;
+	s.coarse[0] = s.wide + length;
+	s.coarse[1] = s.coarse[0] + length;
 	for (int c = 0; c < 2; c++)
 		coarsen(s.y[c], n, s.q, s.z[c]);
 	status = search_template(&s, single, t);
@@ -712,16 +733,16 @@ static enum num_status find(struct template *t, const double *y1, const double *
 
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double reach)
+	double width, double reach)
 {
-	return find(t, y1, y2, hidden, n, duration, transit, reach, -1);
+	return find(t, y1, y2, hidden, n, duration, transit, width, reach, -1);
 }
 
 enum num_status template_single(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double reach, int number)
+	double width, double reach, int number)
 {
-	return find(t, y1, y2, hidden, n, duration, transit, reach, number);
+	return find(t, y1, y2, hidden, n, duration, transit, width, reach, number);
 }
 
 void template_clear(struct template *t)

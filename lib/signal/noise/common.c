@@ -18,7 +18,7 @@ static double noise_of(const double *x, const double *y, double share, size_t n,
 	memset(work, 0, blocks * sizeof *work);
 	for (size_t i = 0; i < blocks * block; i++)
 		work[i / block] += x[i] - share * y[i];
-	return robust_noise(work, blocks, work + blocks);
+	return robust_noise(work, NULL, blocks, work + blocks);
 }
 
 /* What is left of the noise of x less share times y. */

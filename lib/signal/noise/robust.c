@@ -2,6 +2,7 @@
 #include "signal/noise/robust.h"
 #include "num/select.h"
 #include <math.h>
+#include <string.h>
 
 double robust_quantile(double *x, size_t n, double share)
 {
@@ -45,11 +46,12 @@ double robust_spread(double *x, size_t n)
 	return robust_scale(x, n);
 }
 
-double robust_noise(const double *x, size_t n, double *work)
+double robust_noise(const double *x, const unsigned char *hidden, size_t n, double *work)
 {
-	size_t left = n < 20 ? 0 : n - 4;
+	size_t left = n < 20 ? 0 : n - 4, count = 0;
 
 	for (size_t i = 0; i < left; i++)
-		work[i] = fourth_difference(x + i);
-	return robust_scale(work, left);
+		if (!(hidden && memchr(hidden + i, 1, 5)))
+			work[count++] = fourth_difference(x + i);
+	return robust_scale(work, count);
 }

@@ -24,7 +24,8 @@ static inline double fourth_difference(const double *x)
 }
 
 /* Standard deviation of the white noise under slow signals: the median of the fourth
- * differences; work holds n values.  0 for n < 20. */
-double robust_noise(const double *x, size_t n, double *work);
+ * differences of samples that are not hidden (NULL: none is); work holds n values.  0 for
+ * n < 20. */
+double robust_noise(const double *x, const unsigned char *hidden, size_t n, double *work);
 
 #endif

@@ -41,10 +41,14 @@ int converter_saturates(const struct converter *c, double x)
 	return is_at(&c->limit[0], x) || is_at(&c->limit[1], -x);
 }
 
-size_t converter_next(struct converter *c, double x)
+size_t converter_next(struct converter *c, double *sample)
 {
-	double share = (c->repeats + 1) / (c->samples + 2);
+	double share = (c->repeats + 1) / (c->samples + 2), x = *sample;
 
+	if (isnan(x)) {
+		*sample = c->last;
+		return 1;
+	}
 	c->run = c->samples > 0 && x == c->last ? c->run + 1 : 1;
 	c->last = x;
 	c->samples++;

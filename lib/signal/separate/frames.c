@@ -43,16 +43,18 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 			double sign = sign_of(s, sensor);
 
 			for (size_t i = 0; i < some; i++, in += s->channels) {
+				double one = in[0], two = in[components(s) - 1];
+
 				lost[i] =
-					converter_next(converter_of(s, sensor, 0), in[0]);
-				turned[0][i] = sign * in[0];
+					converter_next(converter_of(s, sensor, 0), &one);
+				turned[0][i] = sign * one;
 				if (!has_quadrature(s))
 					continue;
 				size_t other =
-					converter_next(converter_of(s, sensor, 1), in[1]);
+					converter_next(converter_of(s, sensor, 1), &two);
 				lost[i] = other > lost[i] ? other : lost[i];
-				turned[0][i] = sign * (along * in[0] + across * in[1]);
-				turned[1][i] = sign * (along * in[1] - across * in[0]);
+				turned[0][i] = sign * (along * one + across * two);
+				turned[1][i] = sign * (along * two - across * one);
 			}
 			for (int k = 0; k < components(s); k++)
 				if (buffer_append(&s->buffer[sensor + 2 * k], turned[k],

@@ -142,6 +142,7 @@ static void walk_all(struct walk *w, struct instrument *in)
 	c->corrected = flag(w, "corrected", c->corrected);
 	reals(w, "duration", SHAPE_SHORTEST, &c->duration, 1);
 	visit_gain(w, &c->gain);
+	reals(w, "width", DBL_MIN, &c->width, 1);
 	reals(w, "transit", DBL_MIN, &c->transit, 1);
 	reals(w, "delta_min", -INFINITY, &c->delta_min, 1);
 	reals(w, "delta_max", -INFINITY, &c->delta_max, 1);

@@ -20,8 +20,9 @@ void separate_measure_level(struct separate *s)
 		n = n < FOLLOWING_BLOCK ? n : FOLLOWING_BLOCK;
 		for (int c = 0; c < s->channels; c++) {
 			const struct buffer *t = &s->buffer[c];
-			double level = robust_noise(
-				t->x + (s->level_at - t->begin), (size_t)n, work);
+			size_t at = (size_t)(s->level_at - t->begin);
+			double level =
+				robust_noise(t->x + at, t->hidden + at, (size_t)n, work);
 
 			level *= following_at(
 				&t->noise, (double)s->level_at + 0.5 * (double)n);

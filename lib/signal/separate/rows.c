@@ -141,9 +141,9 @@ enum separate_status separate_dense_section(
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
+	s->counters.countless += c.rate_se < c.rate ? 0 : length;
 	if (isfinite(c.unlike)) {
 		s->counters.compared += length;
-		s->counters.countless += c.rate_se < c.rate ? 0 : length;
 		s->counters.unlike += length * c.unlike * c.unlike;
 	}
 	entry->evidence.group = ++s->group;

@@ -282,7 +282,7 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 	enum separate_status status = SEPARATE_OK;
 
 	for (size_t i = 0; i < channels * n; i++)
-		if (!isfinite(x[i])) {
+		if (isinf(x[i])) {
 			s->bad_frame = (long long)(s->counters.samples * s->ratio) +
 				       (long long)(i / channels);
 			s->bad_channel = (int)(i % channels);
