@@ -142,6 +142,23 @@ int main(void)
 	ok(t.left > 0.02, "and is none of the known ones (they leave %.2f)", t.left);
 	template_clear(&t);
 
+	/* One event has 24 times that noise, and its own size tells more or less. */
+	make_record(odd, 1);
+	ok(template_single(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, 0) == NUM_OK &&
+			t.shape && t.events == 1,
+		"the pulse of the clearest event is found");
+	ok(t.shape && least_difference(&t, odd, 1) < 24 * NOISE, "its shape is right");
+	template_clear(&t);
+	ok(template_single(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 1) ==
+				NUM_OK &&
+			t.shape,
+		"so is that of the second of two");
+	template_clear(&t);
+	ok(template_single(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 2) ==
+				NUM_OK &&
+			!t.shape,
+		"there is no third one of two");
+
 	/* The mean of four events has six times the noise power of that of 24. */
 	make_record(odd, 1);
 	add_second_pulses(odd);
