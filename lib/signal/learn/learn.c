@@ -290,13 +290,14 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 }
 
 /* Takes the pulse of that single event, of the clearest few, which describes some clear
- * examples best, all of one sign or of both.  SEPARATE_HARD if there is none. */
+ * examples best, all of one sign or of both, and at a lower price than that of c.
+ * SEPARATE_HARD if there is none. */
 static enum separate_status learn_single(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n,
 	struct calibration *c)
 {
 	enum { SINGLES = 3 };
-	struct guess best = { .single = -1, .penalised = INFINITY };
+	struct guess best = { .single = -1, .penalised = c->penalised };
 	const double duration = c->duration;
 	enum separate_status status = SEPARATE_OK;
 
@@ -571,6 +572,7 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 
 		other.shape = NULL;
 		other.work = c->work;
+		other.penalised = status == SEPARATE_OK ? c->penalised : INFINITY;
 		if (k == KNOWN && last == SINGLE)
 			part.most = 0.5 * (c->work + par->most);
 		now = learn_by(&part, y1, y2, n, low, k == KNOWN && taken ? NULL : found,
