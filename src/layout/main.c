@@ -43,7 +43,7 @@ static const struct opt opts[] = {
 		NULL, 0 },
 	OPT_HEADING("Particles"),
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
-		"peak of the pulse of a 100 um particle over the rms noise", NULL, 0 },
+		"peak of a 100 um particle over the rms of the noise, in dB", NULL, 0 },
 	{ 0, "diameter", OPT_NUM, UNIT_LENGTH, &diameter, 1e-9, 0.1, "D",
 		"diameter of the measured particle", NULL, 0 },
 	{ 0, "arrivals", OPT_NUM, UNIT_FREQUENCY, &arrivals, 0, 1e12, "F",

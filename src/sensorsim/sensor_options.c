@@ -54,7 +54,7 @@ struct opt sensors_rows[] = {
 	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V", "rms noise of a sample",
 		0, 0 },
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
-		"peak of a 100 um particle over the rms of the noise", 0, 0 },
+		"peak of a 100 um particle over the rms of the noise, in dB", 0, 0 },
 	{ 0, "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
 		"corner frequency of a low-pass of the noise; 0: white", 0, 0 },
 	{ 0, "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
