@@ -93,10 +93,10 @@ static inline lanes grey_limit(lanes x)
 
 /* The mean of level exp(-rate t) over the gap that ends at t, of two models: what
  * grey_forecast() makes of the fitted level and rate at t = span + h.  It is level
- * exp(-rate middle) sinh(x) / x with x = rate gap / 2, near 0 by the series 1 + x^2 / 3!
- * +
- * ..., whose first omitted term is x^10 / 11!.  Exponents are limited: the results stay
- * finite, and such growth is beyond any threshold. */
+ * exp(-rate middle) sinh(x) / x with x = rate gap / 2, near 0 by the series of powers of
+ * x^2 with coefficients 1, 1 / 3!, 1 / 5!, ..., whose first omitted term is x^10 / 11!.
+ * Exponents are limited: the results stay finite, and such growth is beyond any
+ * threshold. */
 static inline lanes grey_curve(lanes level, lanes rate, double t, double gap)
 {
 	lanes x = grey_limit(0.5 * gap * rate), xx = x * x, mean;

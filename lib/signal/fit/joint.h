@@ -6,13 +6,13 @@
  *	y2(n) = sum_i g a_i p((n - t_i - delta_i) / T_i) + tones + noise
  *
  * where T_i = duration (1 + delta_i / transit), width times as much in y2: a slow
- *particle has a long pulse, and one coil may be wider than the other.  Pulses are found
- *one by one where the matched filter of the residual is largest, each followed by a
- *Levenberg-Marquardt fit of it and its neighbours with exact derivatives (orthogonal
- *matching pursuit with Newton steps: Mamandipoor, Ramasamy, Madhow, IEEE Trans. Signal
- *Process. 64, 2016), until no further pulse reduces chi-square enough; then all are
- *fitted together.  Tones and offset are linear and are projected out exactly, as far as
- *they are not known beforehand.
+ * particle has a long pulse, and one coil may be wider than the other.  Pulses are found
+ * one by one where the matched filter of the residual is largest, each followed by a
+ * Levenberg-Marquardt fit of it and its neighbours with exact derivatives (orthogonal
+ * matching pursuit with Newton steps: Mamandipoor, Ramasamy, Madhow, IEEE Trans. Signal
+ * Process. 64, 2016), until no further pulse reduces chi-square enough; then all are
+ * fitted together.  Tones and offset are linear and are projected out exactly, as far as
+ * they are not known beforehand.
  *
  * The solver uses only samples that pulses touch, and its steps stay within the range of
  * delta.  To the same chi-square gsl_multifit_nlinear, which needs the whole Jacobian,

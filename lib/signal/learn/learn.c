@@ -48,6 +48,16 @@ static enum num_status shape_lowest_lag(const struct shape *shape, double *lag)
 	return NUM_OK;
 }
 
+/* Steps from the middle to the least of the parabola through three points a step apart,
+ * at most two. */
+static double to_least(double below, double middle, double above)
+{
+	double bend = below - 2 * middle + above;
+	double move = bend > 0 ? 0.5 * (below - above) / bend : below < above ? -1 : 1;
+
+	return fmax(fmin(move, 2), -2);
+}
+
 /* Moves *parameter by a factor to the least chi-square: parabolas through three points
  * on the logarithm, the step shrinking. */
 static void minimise(struct examples *ex, double *parameter, double step, int rounds)
@@ -55,18 +65,13 @@ static void minimise(struct examples *ex, double *parameter, double step, int ro
 	double middle = examples_chi2(ex, 1);
 
 	for (int round = 0; round < rounds; round++) {
-		double x = *parameter, below, above, bend, move;
+		double x = *parameter, below, above, move;
 
 		*parameter = x * exp(-step);
 		below = examples_chi2(ex, 0);
 		*parameter = x * exp(step);
 		above = examples_chi2(ex, 0);
-		bend = below - 2 * middle + above;
-		move = bend > 0 ? 0.5 * (below - above) / bend : below < above ? -1 : 1;
-		if (move > 2)
-			move = 2;
-		if (move < -2)
-			move = -2;
+		move = to_least(below, middle, above);
 		*parameter = x * exp(step * move);
 		above = examples_chi2(ex, 0);
 		if (above < middle)
@@ -305,14 +310,12 @@ static enum separate_status learn_single(const struct calibrate_par *par,
 	const double duration = c->duration;
 	enum separate_status status = SEPARATE_OK;
 
-	for (int k = 0; k < 2 * SINGLES && status == SEPARATE_OK; k++) {
-		const struct guess guess = {
-			.single = k / 2, .signs = k % 2, .width = c->width
-		};
+	for (int k = 0; k < SINGLES && status == SEPARATE_OK; k++) {
+		struct guess guess = { .single = k, .width = c->width };
 
 		c->duration = duration;
 		status = set_single(ex, y1, y2, n, &guess, c);
-		if (status == SEPARATE_OK)
+		for (; guess.signs < 2 && status == SEPARATE_OK; guess.signs++)
 			status = try_shape(par, ex, y1, y2, n, guess, 1, c, &best);
 	}
 	if (status == SEPARATE_MEMORY || best.single < 0)
@@ -423,15 +426,11 @@ static int tune_width(const struct calibrate_par *par, struct examples *ex)
 {
 	const double step = 0.01, small = 5e-4, before = ex->scene.width;
 	const struct joint_scene scene = ex->scene;
-	double middle = examples_chi2(ex, 0), best, move, width;
+	double middle = examples_chi2(ex, 0), best, width;
 	double below = chi2_of_width(par, ex, before * exp(-step));
 	double above = chi2_of_width(par, ex, before * exp(step));
 
-	move = 0.5 * (below - above) / (below - 2 * middle + above);
-	move = below + above > 2 * middle ? fmax(fmin(move, 2), -2)
-	       : below < above            ? -1
-					  : 1;
-	width = before * exp(step * move);
+	width = before * exp(step * to_least(below, middle, above));
 	best = chi2_of_width(par, ex, width);
 	if (chi2_of_width(par, ex, 1) - best >
 		SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))

@@ -21,9 +21,9 @@ struct converter {
 	int stands; /* 1: too many to have been measured */
 };
 
-/* Takes the next sample, which becomes the last one if it is nan, that is, missing;
- * returns how many of the last samples, including this one, turn
- * out not to have been measured; those returned before do not count again. */
+/* Takes the next sample, which becomes the last one if it is nan, that is, missing.
+ * Returns how many of the last samples, including this one, turn out not to have been
+ * measured; those returned before do not count again. */
 size_t converter_next(struct converter *c, double *x);
 /* 1 if x is a limit, by all samples so far. */
 int converter_saturates(const struct converter *c, double x);
