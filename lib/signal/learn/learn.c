@@ -493,6 +493,29 @@ static void hide_spikes(struct examples *ex, const double *y1, const double *y2,
 	}
 }
 
+/* Distance of the pulses of an example that holds two, in durations; else NAN. */
+static double distance(const struct examples *ex, const struct example *e)
+{
+	return e->m == 2 ? fabs(e->pulse[1].t - e->pulse[0].t) / ex->scene.duration : NAN;
+}
+
+/* 1 if in most examples one pulse follows another at the same distance: each is half of
+ * another pulse.  Distances of particles do not recur. */
+static int are_halves(const struct examples *ex)
+{
+	int most = 0;
+
+	for (int i = 0; i < ex->count; i++) {
+		double one = distance(ex, &ex->example[i]);
+		int same = 0;
+
+		for (int k = 0; k < ex->count; k++)
+			same += fabs(distance(ex, &ex->example[k]) - one) < SHAPE_FINEST;
+		most = same > most ? same : most;
+	}
+	return ex->corrected && 2 * most > ex->count;
+}
+
 /* Learns by pulses of one source. */
 static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found, int source,
@@ -527,7 +550,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 			status = SEPARATE_MEMORY;
 	}
 	if (status == SEPARATE_OK)
-		status = ex.status;
+		status = are_halves(&ex) ? SEPARATE_HARD : ex.status;
 	if (ex.joint)
 		c->work += joint_work(ex.joint);
 	c->events = examples_pulses(&ex);
