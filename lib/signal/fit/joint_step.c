@@ -306,14 +306,25 @@ void joint_fill_covariance(struct joint *j)
 
 void joint_gain_error(const struct joint *j, double *share, double *se)
 {
-	double off[2], var = 0, a = j->pulse[0].a;
+	double off[2], var = 0;
 
 	for (int c = 0; c < 2; c++) {
-		const struct column *col = &j->col[0][c];
-		double energy = dot(col->d[2], col->d[2], col->n);
+		double energy = 0, along = 0;
 
-		off[c] = dot(col->d[2], j->r[c] + col->first, col->n) / (a * energy);
-		var += 1 / (a * a * energy);
+		for (int i = 0; i < j->m; i++) {
+			const struct column *a = &j->col[i][c];
+
+			along += j->pulse[i].a * dot(a->d[2], j->r[c] + a->first, a->n);
+			for (int k = 0; k < j->m; k++) {
+				const struct column *b = &j->col[k][c];
+
+				energy += j->pulse[i].a * j->pulse[k].a *
+					  dot_within(a->d[2], a->n, b->d[2], b->n,
+						  b->first - a->first);
+			}
+		}
+		off[c] = along / energy;
+		var += 1 / energy;
 	}
 	*share = off[1] - off[0];
 	*se = sqrt(var);

@@ -72,8 +72,10 @@ struct calibration {
 	int reversed;  /* 1: that pulse with its sign changed */
 	int corrected; /* 1: shape corrected by the residual common to all pulses */
 	double duration, gain; /* as above; negative: the sensors differ in polarity */
-	double width;          /* of the pulses of sensor 2, over those of sensor 1 */
-	double transit;        /* samples between the sensors; INFINITY if unknown */
+	double drift; /* change of the logarithm of the gain, which is that at the middle
+			 of what is learned from, per sample */
+	double width; /* of the pulses of sensor 2, over those of sensor 1 */
+	double transit; /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max;      /* samples around shift */
 	double threshold, threshold_near; /* thresholds of joint.h */
 	double misfit;                    /* of joint.h: error of the shape */

@@ -48,7 +48,7 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 			double stretch = (1 + pulse->delta / ex->scene.transit) *
 					 (p % 2 ? ex->scene.width : 1);
 			double t0 = pulse->t + (p % 2 ? pulse->delta : 0);
-			double a = pulse->a * (p % 2 ? ex->scene.gain : 1);
+			double a = pulse->a * (p % 2 ? examples_gain(ex, e) : 1);
 
 			for (int k = -half; k <= half; k++) {
 				double t = t0 + k * stretch, u = t - floor(t);

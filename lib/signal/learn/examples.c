@@ -94,6 +94,7 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 {
 	enum { ENOUGH = 4 };
 
+	ex->middle = 0.5 * (double)n;
 	pick_sections(ex, y1, y2, n, most, 0, c);
 	ex->pieces = ex->count < ENOUGH;
 	if (ex->pieces)
@@ -116,15 +117,24 @@ static int may_go_on(struct examples *ex)
 	return ex->status == SEPARATE_OK;
 }
 
+double examples_gain(const struct examples *ex, const struct example *e)
+{
+	double at = (double)e->begin + 0.5 * (double)e->n;
+
+	return ex->scene.gain * exp(ex->drift * (at - ex->middle));
+}
+
 /* The present scene for one example. */
 static const struct joint_scene *scene_of(struct examples *ex, const struct example *e)
 {
+	ex->present = ex->scene;
+	ex->present.gain = examples_gain(ex, e);
 	for (int c = 0; c < 2; c++) {
-		ex->scene.tone_knot[c] = 0.5 * ex->scene.tone_hop -
-					 (double)(e->begin + (c ? ex->shift : 0));
-		ex->scene.hidden[c] = hidden_of(ex, c, e->begin, e->n);
+		ex->present.tone_knot[c] = 0.5 * ex->scene.tone_hop -
+					   (double)(e->begin + (c ? ex->shift : 0));
+		ex->present.hidden[c] = hidden_of(ex, c, e->begin, e->n);
 	}
-	return &ex->scene;
+	return &ex->present;
 }
 
 enum joint_status examples_refine(struct examples *ex, const struct example *e,

@@ -29,7 +29,10 @@ struct example {
 
 struct examples {
 	struct joint *joint;
-	struct joint_scene scene; /* present parameters of the instrument */
+	struct joint_scene scene;   /* present parameters of the instrument, ... */
+	struct joint_scene present; /* ... at one example */
+	double drift;  /* change of the logarithm of the gain per sample; ... */
+	double middle; /* ... the sample where it is that of the scene */
 	struct example example[EXAMPLES_MAX];
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	long shift;                     /* samples by which channel 2 was moved back */
@@ -73,6 +76,9 @@ double examples_chi2(struct examples *ex, int keep);
 /* Refines pulse[0 .. e->m) of one example under the present scene. */
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
+
+/* The gain at one example. */
+double examples_gain(const struct examples *ex, const struct example *e);
 
 int examples_pulses(const struct examples *ex); /* number of them in all */
 /* 1 if the largest number of pulses was found: there may be more. */

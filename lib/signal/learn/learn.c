@@ -102,6 +102,56 @@ static void tune(
 		minimise(ex, &ex->scene.gain, step, rounds);
 }
 
+/* Chi-square with this width.  Mean duration and energy at sensor 2 are kept: duration
+ * and gain that go with the width then hardly change with it. */
+static double chi2_of_width(
+	const struct calibrate_par *par, struct examples *ex, double log_width)
+{
+	double change = sqrt(exp(log_width) / ex->scene.width);
+
+	ex->scene.width = exp(log_width);
+	ex->scene.duration /= isnan(par->duration) ? change : 1;
+	ex->scene.gain /= isnan(par->gain) ? change : 1;
+	return examples_chi2(ex, 0);
+}
+
+/* Chi-square if the logarithm of the gain changes by this much in what is learned from.
+ */
+static double chi2_of_drift(
+	const struct calibrate_par *par, struct examples *ex, double change)
+{
+	(void)par;
+	ex->drift = change / (2 * ex->middle);
+	return examples_chi2(ex, 0);
+}
+
+typedef double chi2_of(const struct calibrate_par *, struct examples *, double);
+
+/* Adjusts a parameter that is 0 in most instruments to the least chi-square, by a
+ * parabola; 1 if it has changed.  It is 0 unless it reduces chi-square by more than
+ * noise, and what the shape leaves, would. */
+static int tune_rare(const struct calibrate_par *par, struct examples *ex, chi2_of *of,
+	double before, double step)
+{
+	const double small = 5e-4;
+	const struct examples kept = *ex;
+	double middle = of(par, ex, before), best, now, below, above;
+
+	below = of(par, ex, before - step);
+	above = of(par, ex, before + step);
+	now = before + step * to_least(below, middle, above);
+	best = of(par, ex, now);
+	if (of(par, ex, 0) - best > SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
+		of(par, ex, now);
+	else
+		now = 0;
+	if (fabs(now - before) > small)
+		return 1;
+	ex->scene = kept.scene;
+	ex->drift = kept.drift;
+	return 0;
+}
+
 /* Takes this pulse, as the whitened record has it at the present duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse)
 {
@@ -189,6 +239,9 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 	examples_fit(ex, EXAMPLES_ROUGH);
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
+	ex->drift = 0;
+	if (isnan(par->gain))
+		tune_rare(par, ex, chi2_of_drift, 0, 0.1);
 	tune(par, ex, 0.1, 3);
 	guess.chi2 = examples_fit(ex, 0.003);
 	guess.penalised = ex->penalised;
@@ -406,39 +459,16 @@ static enum separate_status converge(
 	return SEPARATE_OK;
 }
 
-/* Chi-square with this width.  Mean duration and energy at sensor 2 are kept: duration
- * and gain that go with the width then hardly change with it. */
-static double chi2_of_width(
-	const struct calibrate_par *par, struct examples *ex, double width)
+/* Adjusts width and drift of the gain; 1 if one has changed. */
+static int tune_rest(const struct calibrate_par *par, struct examples *ex, int round)
 {
-	double change = sqrt(width / ex->scene.width);
+	double finest = 0.01, step = fmax(0.1 * pow(0.3, round), finest);
+	int changed = tune_rare(par, ex, chi2_of_width, log(ex->scene.width), finest);
 
-	ex->scene.width = width;
-	ex->scene.duration /= isnan(par->duration) ? change : 1;
-	ex->scene.gain /= isnan(par->gain) ? change : 1;
-	return examples_chi2(ex, 0);
-}
-
-/* Adjusts the width of the pulses of sensor 2 to the least chi-square, by a parabola; 1
- * if it has changed.  Coils are made alike: a difference has to reduce chi-square by more
- * than noise, and what the shape leaves, would. */
-static int tune_width(const struct calibrate_par *par, struct examples *ex)
-{
-	const double step = 0.01, small = 5e-4, before = ex->scene.width;
-	const struct joint_scene scene = ex->scene;
-	double middle = examples_chi2(ex, 0), best, width;
-	double below = chi2_of_width(par, ex, before * exp(-step));
-	double above = chi2_of_width(par, ex, before * exp(step));
-
-	width = before * exp(step * to_least(below, middle, above));
-	best = chi2_of_width(par, ex, width);
-	if (chi2_of_width(par, ex, 1) - best >
-		SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
-		chi2_of_width(par, ex, width);
-	if (fabs(log(ex->scene.width / before)) > small)
-		return 1;
-	ex->scene = scene;
-	return 0;
+	if (isnan(par->gain))
+		changed |= tune_rare(
+			par, ex, chi2_of_drift, ex->drift * 2 * ex->middle, step);
+	return changed;
 }
 
 /* Adjusts all parameters. */
@@ -449,7 +479,7 @@ static enum separate_status settle(
 	enum separate_status status = converge(par, ex, c);
 
 	for (int k = 0; k < ROUNDS && status == SEPARATE_OK && !ex->pieces &&
-			ex->status == SEPARATE_OK && tune_width(par, ex);
+			ex->status == SEPARATE_OK && tune_rest(par, ex, k);
 		k++)
 		status = converge(par, ex, c);
 	return status;
@@ -554,6 +584,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	if (ex.joint)
 		c->work += joint_work(ex.joint);
 	c->events = examples_pulses(&ex);
+	c->drift = ex.drift;
 	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(c->misfit, ex.share);
 	c->corrected = ex.corrected;

@@ -1,4 +1,4 @@
-/* following.c - flow and gain followed by pulses that stand alone */
+/* following.c - flow and gain followed by pulses */
 #include "num/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -45,11 +45,19 @@ static void follow_delay(struct separate *s, double delay)
 	validation_range(s->validation, s->scene.delta_min, s->scene.delta_max);
 }
 
-/* The gain is kept until the mean of the last GAINS pulses differs from it by three
- * standard errors; then it is set to their mean. */
-static void follow_gain(struct separate *s)
+double separate_gain_at(const struct separate *s, double at)
 {
-	double share, se;
+	return s->gain * exp(s->drift * (fmin(at, s->drifts_to) - s->gain_at));
+}
+
+/* The gain is kept, or goes on drifting, until the mean of the last GAINS windows differs
+ * from it by three standard errors; then it is set to their mean, and has drifted since
+ * it was set last.  In 24 records of 40 to 300 particles whose gain drifts by 10 to 50 %,
+ * 3676, 3682 and 3683 of 3734 are found rightly if none, half and all of the deviation is
+ * put down to the drift. */
+static void follow_gain(struct separate *s, double time)
+{
+	double share, se, at, off;
 
 	joint_gain_error(s->joint, &share, &se);
 	if (!(se > 0) || isinf(se))
@@ -57,18 +65,27 @@ static void follow_gain(struct separate *s)
 	s->gain_off += share / se;
 	s->gain_sum += share / (se * se);
 	s->gain_weight += 1 / (se * se);
+	s->gain_time += time / GAINS;
 	if (++s->gains % GAINS)
 		return;
-	if (fabs(s->gain_off) > SIGMAS_SELDOM * sqrt(GAINS))
-		s->gain *= 1 + s->gain_sum / s->gain_weight;
-	s->gain_off = s->gain_sum = s->gain_weight = 0;
+	at = s->gain_time;
+	off = s->gain_sum / s->gain_weight;
+	if (fabs(s->gain_off) > SIGMAS_SELDOM * sqrt(GAINS) && off > -1) {
+		s->gain = separate_gain_at(s, at) * (1 + off);
+		if (at > s->gain_at)
+			s->drift += log(1 + off) / (at - s->gain_at);
+		s->gain_at = at;
+	}
+	s->drifts_to = fmax(2 * at - s->learned_at, s->drifts_to);
+	s->gain_off = s->gain_sum = s->gain_weight = s->gain_time = 0;
 }
 
 void separate_set_gain(struct separate *s, long long from)
 {
 	const double at[2] = { (double)from, (double)(from + s->cal.shift) };
 
-	s->scene.gain = s->gain * following_at(&s->buffer[0].noise, at[0]) /
+	s->scene.gain = separate_gain_at(s, at[0]) *
+			following_at(&s->buffer[0].noise, at[0]) /
 			following_at(&s->buffer[1].noise, at[1]);
 	for (int c = 0; c < 2 && has_quadrature(s); c++)
 		s->quadrature.noise[c] = separate_noise_at(s, c + 2, at[c]) /
@@ -77,10 +94,9 @@ void separate_set_gain(struct separate *s, long long from)
 
 void separate_follow(struct separate *s, const struct account *a)
 {
-	if (a->m != 1 || a->goodness.stretch != SEPARATE_ALONE)
-		return;
-	if (separate_is_range_free(s))
+	if (a->m == 1 && a->goodness.stretch == SEPARATE_ALONE &&
+		separate_is_range_free(s))
 		follow_delay(s, a->pulse[0].delta);
-	if (isnan(s->par.known.gain))
-		follow_gain(s);
+	if (a->m > 0 && isnan(s->par.known.gain))
+		follow_gain(s, (double)a->from + a->pulse[0].t);
 }

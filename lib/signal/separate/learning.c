@@ -115,6 +115,10 @@ static enum separate_status start(struct separate *s, size_t n)
 	s->done = s->level_at = s->buffer[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->gain = s->scene.gain;
+	s->drift = c->drift;
+	s->learned_at = (double)s->buffer[0].begin;
+	s->gain_at = s->learned_at + 0.5 * (double)n;
+	s->drifts_to = s->gain_at + (double)n;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))

@@ -34,7 +34,7 @@ struct report {
 
 /* The range of delays follows the last TRACKED pulses that stood alone, once there are
  * ENOUGH: widened by half on either side, the range of 12 normal deviates misses 1 % of
- * later ones and that of 64 6e-5.  The gain is checked after every GAINS of them, whose
+ * later ones and that of 64 6e-5.  The gain is checked after every GAINS windows, whose
  * mean has an eighth of the variance of one.
  *
  * In 28 records with 4400 particles (scenes flow-drift, gain-drift, turbulent and plain
@@ -85,7 +85,11 @@ struct separate {
 	struct masks *masks;
 	struct joint_scene scene;
 	struct common common;
-	double gain; /* of sensor 2, over the noise learned, as followed */
+	double gain;       /* of sensor 2, over the noise learned, as followed ... */
+	double gain_at;    /* ... at this sample, ... */
+	double drift;      /* ... the change of its logarithm per sample, ... */
+	double drifts_to;  /* ... and the sample up to which it is believed: ... */
+	double learned_at; /* ... for as long as it has been followed from here on */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
 	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
@@ -102,9 +106,10 @@ struct separate {
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	/* Of the last GAINS such pulses or fewer: sums of the relative deviations of the
-	 * gain in standard errors, of these by their weights, and of the weights. */
-	double gain_off, gain_sum, gain_weight;
+	/* Of the last GAINS windows or fewer: sums of the relative deviations of the
+	 * gain in standard errors, of these by their weights, of the weights, and of
+	 * their times. */
+	double gain_off, gain_sum, gain_weight, gain_time;
 	int gains;
 	long number;
 	long long done; /* samples before this one are done */
@@ -295,8 +300,10 @@ enum separate_status separate_fit_without_common(struct separate *s, struct acco
 int separate_is_range_free(const struct separate *s);
 /* Widens the range of delays to the widest one, about its present middle. */
 void separate_widen(struct separate *s);
-/* Updates the range of delays and the gain by a pulse that stands alone. */
+/* Updates the range of delays by a pulse that stands alone, and the gain by all. */
 void separate_follow(struct separate *s, const struct account *a);
+/* The gain at a sample, as followed. */
+double separate_gain_at(const struct separate *s, double at);
 /* Sets the gain, and the noise of the second components, for a section that begins at
  * sample from: pulses are in units of the noise, which changes in every channel. */
 void separate_set_gain(struct separate *s, long long from);
