@@ -7,6 +7,7 @@
 #include "signal/learn/matched.h"
 #include "signal/noise/robust.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Share of the energy of a pulse that its shape may leave, see joint.h: if no lag
@@ -413,6 +414,39 @@ static enum separate_status find_opposite(
 	return status == SEPARATE_OK ? SEPARATE_OPPOSITE : status;
 }
 
+/* Deviations of the noise above which the logarithm of a sample counts.  In 14 records in
+ * which plain correlation finds no lag 1, 4 and 16 have 176, 205 and 102 particles found
+ * rightly: impulses (3), turbulent flow (5) and laminar flow (6). */
+static const double LOUD = 4;
+
+/* The lag at which the channels correlate where samples count by their logarithm: small
+ * particles then tell as much of it as large ones, and impulses little. */
+static enum separate_status find_lag_by_all(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	size_t n = rec->n;
+	double *y = malloc(2 * n * sizeof *y);
+	struct record even = *rec;
+	struct calibration other = *c;
+	enum separate_status status;
+
+	if (!y)
+		return SEPARATE_MEMORY;
+	for (size_t i = 0; i < n; i++) {
+		y[i] = asinh(rec->y1[i] / (LOUD * c->noise[0]));
+		y[n + i] = asinh(rec->y2[i] / (LOUD * c->noise[1]));
+	}
+	even.y1 = y;
+	even.y2 = y + n;
+	status = find_lag(par, &even, &other);
+	if (status == SEPARATE_OK)
+		status = check_lag(&even, even.y1, even.y2, &other);
+	free(y);
+	if (status == SEPARATE_OK)
+		*c = other;
+	return status;
+}
+
 /* Moves the second channel back by the lag. */
 static void align(struct record *rec, const struct calibration *c)
 {
@@ -665,8 +699,11 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	if (status == SEPARATE_OK)
 		status = find_reverse(par, &rec, c);
 	if (status == SEPARATE_OK && !look->seen &&
-		(isnan(par->duration) || isnan(par->lag)))
+		(isnan(par->duration) || isnan(par->lag))) {
 		status = check_lag(&rec, y1, y2, c);
+		if (status == SEPARATE_NO_LAG && isnan(par->lag))
+			status = find_lag_by_all(par, &rec, c);
+	}
 	if (status == SEPARATE_NO_LAG)
 		status = find_opposite(par, &rec, c);
 	if (status != SEPARATE_OK)
