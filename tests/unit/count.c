@@ -111,6 +111,10 @@ static void check_codes(void)
 	near(as4059_limit(0, 14), 3200000e4, 0,
 		"the limit of class 12A is 3.2 million per 100 ml");
 	near(as4059_limit(3, 7), 306e4, 0, "the limit of class 5D is 306 per 100 ml");
+	/* NAS 1638, class 7: 32000 + 5700 + 1012 + 180 + 32 per 100 ml, from 5 um on. */
+	near(as4059_limit(1, 9), 38924e4, 0, "the limit of class 7B is 38924 per 100 ml");
+	near(as4059_class(2, 6924e4), 9, 0, "6924 particles per 100 ml are class 7C");
+	near(as4059_class(3, 1225e4), 10, 0, "1225 particles per 100 ml are class 8D");
 	near(as4059_class(5, 1.5e4), 5, 0,
 		"1.5 particles per 100 ml above 70 um are class 3");
 }
