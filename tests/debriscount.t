@@ -90,6 +90,14 @@ awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 8; h++) for (i = 0; i < 2 
 debriscount --output trend --period 1h --duration 8h grows.tsv >trend.tsv
 is "the trend is two per hour in each hour" "$(column slope trend.tsv | tail -n 1 | awk '{ printf "%.6f", $1 }')" 2.000000
 is "two periods have no interval of the slope" "$(cell slope trend.tsv 2)" nan
+# 8 h of none: the deviation of one particle in eight periods, sqrt(1/8) per hour; spread of
+# the hours 42 h2; 1.95996 deviations
+printf 'time1\tdiameter\n' >none.tsv
+debriscount --output trend --period 1h --duration 8h none.tsv >trend.tsv
+near "hours without particles leave the slope in doubt" "$(column slope_high trend.tsv | tail -n 1)" 0.106925 1e-5
+is "as many particles in each hour, too" "$(awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 8; h++)
+	print h * 3600 + 10 "\t50e-6" }' | debriscount --output trend --period 1h --duration 8h |
+	column slope_high /dev/stdin | tail -n 1 | awk '{ printf "%.5f", $1 }')" 0.32077
 awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 9; h++) { n = h < 5 ? 20 : 5 + h
 	for (i = 0; i < n; i++) print h * 3600 + 10 * i "\t50e-6" } }' >turns.tsv
 debriscount --output trend --period 1h --duration 9h --window 4 turns.tsv >trend.tsv
@@ -140,7 +148,6 @@ fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscou
 fails "a volume by the period" 2 'requires --flow' debriscount --volume 1L --period 1s six.tsv
 fails "no times to part periods by" 1 'no column of times' debriscount --period 1s bottle.tsv
 fails "an empty stream" 1 'empty, want table' debriscount
-head -n 1 six.tsv >none.tsv
 fails "no particle and no duration" 1 'with --duration' debriscount none.tsv
 debriscount --duration 1h none.tsv >none.out
 is "an hour without particles has an upper limit of 3.7" "$(cell number none.out) $(cell number_high none.out)" "0 3.68888"

@@ -129,7 +129,7 @@ void classes_add_possible(struct classes *c, const struct classes *from)
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
 	struct weighted number[2] = { { 0 } }, volume[2] = { { 0 } };
-	double lower = c->edge[first], upper = c->edge[last + 1], low, high;
+	double lower = c->edge[first], upper = c->edge[last + 1], low, high, squares = 0;
 	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
 	double heavy = ball(upper) / detection_probability(&c->par.detection, upper);
@@ -142,6 +142,9 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 		}
 		out->unresolved += c->class[k].unresolved;
 		out->volume.value += c->class[k].unresolved_volume;
+		if (c->class[k].unresolved > 0) /* equal particles */
+			squares += pow(c->class[k].unresolved_volume, 2) /
+				   c->class[k].unresolved;
 	}
 	out->sure = number[0].n;
 	out->doubtful = number[1].n - number[0].n;
@@ -150,10 +153,16 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	weighted_interval(&number[0], 0, c->par.confidence, &out->number.low, &high);
 	weighted_interval(&volume[0], 0, c->par.confidence, &out->volume.low, &high);
 	weighted_interval(&number[1], weight, c->par.confidence, &low, &out->number.high);
+	out->number.possible = weight;
+	out->volume.possible = heavy;
 	if (number[1].n > 0 &&
 		isinf(upper)) /* the largest observed particle limits an open class */
 		heavy = volume[1].largest;
 	weighted_interval(&volume[1], heavy, c->par.confidence, &low, &out->volume.high);
+	out->number.largest = number[1].largest;
+	out->volume.largest = volume[1].largest;
+	out->number.squares = number[0].squares + out->unresolved;
+	out->volume.squares = volume[0].squares + squares;
 	out->number.high += c->unknown ? INFINITY : c->most[first];
 	out->volume.high += c->unknown ? INFINITY : c->most_volume[first];
 }

@@ -21,9 +21,11 @@ struct classes_par {
 	double confidence;
 };
 
-/* A value and the limits of its interval. */
+/* A value and the limits of its interval; the sum of the squared weights of its particles
+ * and the largest weight among them, and the largest one possible. */
 struct counted {
 	double value, low, high;
+	double squares, largest, possible;
 };
 
 struct class_count {
