@@ -52,6 +52,9 @@ abrade --gap 9um --hardness 2GPa --friction 0.01 --inlet 5mm four.tsv >in.tsv
 is "a ball of 5 mm admits 10 um at a friction of 0.01, but not 30 um" \
 	"$(column mode in.tsv | tr '\n' ' ')" "rolls free rejected grooves "
 
+printf 'diameter\tclass\n10e-6\tnon-ferrous\n' | abrade --gap 9um --hardness 2GPa --friction 0.1 >kind.tsv 2>err
+is "a non-ferrous particle is larger than its diameter, and marked" "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
+
 # An oil of a known code: as many particles as it has, the mean beside the draw.
 abrade --iso 18:16:13 --largest 70um --area 1m2 --gap 5um --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --summary s.tsv --stats st >oil.tsv

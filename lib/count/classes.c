@@ -22,9 +22,12 @@ struct classes {
 	int unknown; /* an unresolved section had no diameter */
 };
 
-static double ball(double d)
+/* Volume of a particle of this diameter to the sensor. */
+static double ball(const struct classes *c, double d)
 {
-	return M_PI / 6 * d * d * d;
+	double size = c->par.size && d < INFINITY ? c->par.size(d) : d;
+
+	return M_PI / 6 * size * size * size;
 }
 
 struct classes *classes_new(const double *edge, int n, const struct classes_par *par)
@@ -82,7 +85,7 @@ void classes_add(struct classes *c, double diameter, int sure)
 
 	for (int i = sure ? 0 : 1; k >= 0 && i < 2; i++) {
 		weighted_add(&c->class[k].number[i], w);
-		weighted_add(&c->class[k].volume[i], w * ball(diameter));
+		weighted_add(&c->class[k].volume[i], w * ball(c, diameter));
 	}
 }
 
@@ -96,13 +99,13 @@ void classes_add_stretch(struct classes *c, double number, double diameter)
 	}
 	if (k >= 0) {
 		c->class[k].unresolved += number;
-		c->class[k].unresolved_volume += number * ball(diameter);
+		c->class[k].unresolved_volume += number * ball(c, diameter);
 	}
 	for (k = 0; k < c->n; k++) {
-		double x = pow(diameter / c->edge[k], 3);
+		double x = pow(diameter / c->edge[k], 3), edge = ball(c, c->edge[k]);
 
 		c->most[k] += number * fmin(x * x, x * x * x * x);
-		c->most_volume[k] += number * ball(diameter) * x;
+		c->most_volume[k] += edge > 0 ? number * x * (edge * x) : INFINITY;
 	}
 }
 
@@ -125,6 +128,11 @@ void classes_add_possible(struct classes *c, const struct classes *from)
 	c->unknown |= from->unknown;
 }
 
+double classes_detection(const struct classes *c, int k)
+{
+	return detection_probability(&c->par.detection, c->edge[k]);
+}
+
 /* Adds up the classes from first to last. */
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
@@ -132,7 +140,7 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	double lower = c->edge[first], upper = c->edge[last + 1], low, high, squares = 0;
 	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
-	double heavy = ball(upper) / detection_probability(&c->par.detection, upper);
+	double heavy = ball(c, upper) / detection_probability(&c->par.detection, upper);
 
 	*out = (struct class_count){ 0 };
 	for (int k = first; k <= last; k++) {

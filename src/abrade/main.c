@@ -302,6 +302,7 @@ int main(int argc, char **argv)
 		doubtful = 1;
 	}
 	verdict_report();
+	doubtful |= verdict_equivalent();
 	particles_close(source);
 	if (table)
 		table_done(table);

@@ -92,7 +92,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 	more = table_next(t);
 	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
 	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
-	cw = table_find(t, "verdict");
+	cw = verdict_column(t);
 	for (; more; more = table_next(t)) {
 		double a, v;
 

@@ -127,8 +127,9 @@ static void put_classes(struct report *r, const struct classes *c, const char *g
 
 /* The codes at the value or an end of the interval: sizes that are seen in less than 90 %
  * of cases have none. */
-static void put_codes(struct report *r, const struct class_count *n, double oil_volume,
-	const int *sizes, int count, int iso, size_t end)
+static void put_codes(struct report *r, const struct classes *c,
+	const struct class_count *n, double oil_volume, const int *sizes, int count,
+	int iso, size_t end)
 {
 	char text[128] = "";
 
@@ -138,11 +139,9 @@ static void put_codes(struct report *r, const struct class_count *n, double oil_
 					: end == 1 ? here->number.low
 						   : here->number.high) /
 				oil_volume;
-		double seen = detection_probability(
-			&r->par.classes.detection, r->par.edge[sizes[k]]);
 		char one[16];
 
-		if (seen < SEEN)
+		if (classes_detection(c, sizes[k]) < SEEN)
 			snprintf(one, sizeof one, "-");
 		else if (iso && iso4406_code(number) < ISO4406_CODES)
 			snprintf(one, sizeof one, "%d", iso4406_code(number));
@@ -172,9 +171,9 @@ static void put_code_row(struct report *r, const struct classes *c, const char *
 	begin_row(r, group, begin, end);
 	table_put(r->table, v);
 	for (size_t e = 0; e < 3; e++)
-		put_codes(r, n, v, all, ISO4406_SIZES, 1, e);
+		put_codes(r, c, n, v, all, ISO4406_SIZES, 1, e);
 	for (size_t e = 0; e < 3; e++)
-		put_codes(r, n, v, all, AS4059_SIZES, 0, e);
+		put_codes(r, c, n, v, all, AS4059_SIZES, 0, e);
 	table_put(r->table, alarm);
 	table_end_row(r->table);
 }

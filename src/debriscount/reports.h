@@ -16,6 +16,8 @@ struct report_par {
 	struct classes_par classes;
 	double edge[OPT_LIST_MAX];
 	int edges;
+	/* Of class non-ferrous: to the sensor, and of the sphere; or NULL. */
+	double (*equivalent)(double size), (*size)(double equivalent);
 	double density;      /* of the particles, kg/m3; nan: no masses */
 	double alarm, clear; /* levels, per hour */
 	int alarm_mass;      /* of kg */
