@@ -150,8 +150,9 @@ struct doubt {
 };
 
 /* Pulses of a table may share an error, such as that of the instrument which was
- * estimated from their record.  From three tables on, their means are observations of
- * their own, and what they leave in doubt is the least that remains. */
+ * estimated from their record.  Their means are observations of
+ * their own, and what they leave in doubt is the least that remains: about the constant
+ * from two tables on, about the exponent from three. */
 static void allow_shared(const struct pulses *p, struct doubt *d)
 {
 	size_t tables = (size_t)balls.n;
@@ -258,12 +259,15 @@ int main(int argc, char **argv)
 		doubt.slope = l.t * l.slope_se;
 		doubt.slope_p = line_slope_p(&l, exponent);
 	}
-	if (balls.n >= 3)
+	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
 	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY;
 	if (doubt.slope_p < UNLIKELY)
-		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
-			doubt.slope_p);
+		warn("the exponent is %.3g, not %g: p = %.2g%s", l.slope, exponent,
+			doubt.slope_p,
+			balls.n < 3
+				? ", unless a diameter or a record has an error of its own"
+				: "");
 	if (lack < UNLIKELY)
 		warn("no power law fits all balls within the scatter of their pulses, p = %.2g: "
 		     "diameters or records have errors of their own",
