@@ -72,6 +72,7 @@ static const struct prog prog = { "abrade",
 
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
+static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 static int doubtful;
 static double yielding, buried; /* particles */
 
@@ -149,6 +150,19 @@ static double mean_gap(const struct abrasion_par *par)
 	return found;
 }
 
+/* What the particles of an oil do on average, those included that are too rare to be
+ * drawn. */
+static void find_mean(struct abrasion_par par)
+{
+	par.gap = gap;
+	population_mean(population, &par, CLASSES, &mean);
+	if (!(mean.undescribed > 0))
+		return;
+	warn("%.3g particles per m2 of the oil yield or are buried: the mean wear does not include theirs",
+		mean.undescribed);
+	doubtful = 1;
+}
+
 struct totals {
 	double load, volume[2], number[ABRASION_MODES];
 };
@@ -170,12 +184,9 @@ static void put_summary(long realisation, const struct abrasion_par *par,
 	const struct totals *t, size_t n)
 {
 	double per_metre = slide > 0 ? 1 / (area * slide) : NAN;
-	struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 
 	if (!summary)
 		return;
-	if (population)
-		population_mean(population, par, CLASSES, &mean);
 	const double row[] = { (double)realisation, par->gap, t->load, t->load / area,
 		(double)n, t->number[ABRASION_FREE], t->number[ABRASION_REJECTED],
 		t->number[ABRASION_ROLLS], t->number[ABRASION_GROOVES],
@@ -265,6 +276,8 @@ int main(int argc, char **argv)
 			"rolls grooves embeds yields buried volume1 volume2 "
 			"depth_rate1 depth_rate2 mean_pressure "
 			"mean_depth_rate1 mean_depth_rate2");
+	if (summary && population)
+		find_mean(par);
 	while (particles_next(source, &in, &realisation)) {
 		run_realisation(&in, realisation);
 		realisations++;
@@ -289,6 +302,7 @@ int main(int argc, char **argv)
 		doubtful = 1;
 	}
 	verdict_report();
+	doubtful |= verdict_equivalent();
 	particles_close(source);
 	if (table)
 		table_done(table);

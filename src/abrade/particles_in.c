@@ -109,7 +109,7 @@ struct source *particles_read(const char *path)
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");
-	cv = table_find(t, "verdict");
+	cv = verdict_column(t);
 	for (; more; more = table_next(t)) {
 		struct row r = { .number = s->rows, .aspect = 1 };
 

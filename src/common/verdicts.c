@@ -4,7 +4,8 @@
 #include <string.h>
 
 static int doubtful_too;
-static double doubtful, unresolved, foreign;
+static double doubtful, unresolved, foreign, non_ferrous;
+static int class_column = -1;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
@@ -22,10 +23,18 @@ static int is_event(const char *word)
 	return 0;
 }
 
+int verdict_column(struct table_in *t)
+{
+	class_column = table_find(t, "class");
+	return table_find(t, "verdict");
+}
+
 enum verdict verdict_of(const struct table_in *t, int column)
 {
 	const char *word = column < 0 ? "alone" : table_text(t, column);
 
+	non_ferrous += class_column >= 0 &&
+		       strcmp(table_text(t, class_column), "non-ferrous") == 0;
 	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0)
 		return VERDICT_SURE;
 	if (strcmp(word, "unresolved") == 0) {
@@ -60,4 +69,13 @@ void verdict_report(void)
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",
 			unresolved);
+}
+
+int verdict_equivalent(void)
+{
+	if (non_ferrous > 0)
+		warn("%.0f rows are non-ferrous: their diameter is that of a ferrous particle "
+		     "with the same pulse, and smaller than theirs",
+			non_ferrous);
+	return non_ferrous > 0;
 }

@@ -9,6 +9,7 @@
 struct group {
 	char *name;
 	struct classes *classes;
+	struct classes *non_ferrous; /* the same particles, if they are; or NULL */
 	struct rate_history history;
 };
 
@@ -21,6 +22,51 @@ struct groups {
 	int doubtful;
 };
 
+/* Whether particles of this value may have any other. */
+static int is_unclear(const struct group *group)
+{
+	return strcmp(group->name, "unclear") == 0 || strcmp(group->name, "nan") == 0;
+}
+
+static int is_non_ferrous(const struct groups *g, const struct group *group)
+{
+	return g->par.size && strcmp(group->name, "non-ferrous") == 0;
+}
+
+static struct classes *new_classes(const struct groups *g, int non_ferrous)
+{
+	struct classes_par par = g->par.classes;
+	double edge[OPT_LIST_MAX];
+	struct classes *c;
+
+	par.size = non_ferrous ? g->par.size : NULL;
+	for (int k = 0; k < g->par.edges; k++)
+		edge[k] =
+			non_ferrous ? g->par.equivalent(g->par.edge[k]) : g->par.edge[k];
+	c = classes_new(edge, g->par.edges, &par);
+	if (!c)
+		die(EXIT_RUN, "out of memory");
+	return c;
+}
+
+/* The group of this name, made where it is new. */
+static struct group *at(struct groups *g, const char *name)
+{
+	struct group *new;
+
+	for (size_t i = 0; i < g->n; i++)
+		if (strcmp(g->group[i].name, name) == 0)
+			return &g->group[i];
+	if (room_for(&g->group, &g->room, g->n + 1, sizeof *g->group))
+		die(EXIT_RUN, "out of memory");
+	new = &g->group[g->n++];
+	*new = (struct group){ .name = xstrdup(name) };
+	new->classes = new_classes(g, is_non_ferrous(g, new));
+	if (g->par.size && is_unclear(new))
+		new->non_ferrous = new_classes(g, 1);
+	return new;
+}
+
 struct groups *groups_new(const struct report_par *par)
 {
 	struct groups *g = xcalloc(1, sizeof *g);
@@ -28,31 +74,27 @@ struct groups *groups_new(const struct report_par *par)
 	g->par = *par;
 	g->report = report_open(par);
 	if (!par->by)
-		groups_at(g, "");
+		at(g, "");
 	return g;
 }
 
-struct classes *groups_at(struct groups *g, const char *name)
+void groups_add(struct groups *g, const char *name, double diameter, int sure)
 {
-	struct group *new;
+	struct group *group = at(g, name);
 
-	for (size_t i = 0; i < g->n; i++)
-		if (strcmp(g->group[i].name, name) == 0)
-			return g->group[i].classes;
-	if (room_for(&g->group, &g->room, g->n + 1, sizeof *g->group))
-		die(EXIT_RUN, "out of memory");
-	new = &g->group[g->n++];
-	*new = (struct group){ .name = xstrdup(name),
-		.classes = classes_new(g->par.edge, g->par.edges, &g->par.classes) };
-	if (!new->classes)
-		die(EXIT_RUN, "out of memory");
-	return new->classes;
+	classes_add(group->classes, diameter, sure);
+	if (group->non_ferrous)
+		classes_add(group->non_ferrous, diameter, sure);
 }
 
-/* Whether particles of this value may have any other. */
-static int is_unclear(const struct group *group)
+void groups_add_stretch(
+	struct groups *g, const char *name, double number, double diameter)
 {
-	return strcmp(group->name, "unclear") == 0 || strcmp(group->name, "nan") == 0;
+	struct group *group = at(g, name);
+
+	classes_add_stretch(group->classes, number, diameter);
+	if (group->non_ferrous)
+		classes_add_stretch(group->non_ferrous, number, diameter);
 }
 
 void groups_report(struct groups *g, double begin, double end, int whole)
@@ -60,14 +102,18 @@ void groups_report(struct groups *g, double begin, double end, int whole)
 	for (size_t i = 0; i < g->n; i++)
 		for (size_t j = 0; !is_unclear(&g->group[i]) && j < g->n; j++)
 			if (is_unclear(&g->group[j]))
-				classes_add_possible(
-					g->group[i].classes, g->group[j].classes);
+				classes_add_possible(g->group[i].classes,
+					is_non_ferrous(g, &g->group[i])
+						? g->group[j].non_ferrous
+						: g->group[j].classes);
 	for (size_t i = 0; i < g->n; i++) {
 		struct group *one = &g->group[i];
 
 		report_period(g->report, &one->history, one->name, one->classes, begin,
 			end, whole);
 		classes_clear(one->classes);
+		if (one->non_ferrous)
+			classes_clear(one->non_ferrous);
 	}
 	report_flush(g->report);
 	stats_add("periods", 1);
@@ -117,6 +163,7 @@ void groups_free(struct groups *g)
 	for (size_t i = 0; i < g->n; i++) {
 		free(g->group[i].name);
 		classes_free(g->group[i].classes);
+		classes_free(g->group[i].non_ferrous);
 		rate_history_free(&g->group[i].history);
 	}
 	free(g->group);

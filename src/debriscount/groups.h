@@ -9,8 +9,10 @@
 struct groups;
 
 struct groups *groups_new(const struct report_par *par);
-/* The counts of a group, made where it is new. */
-struct classes *groups_at(struct groups *g, const char *name);
+/* Adds a particle or an unresolved section to the group of this name, see classes.h. */
+void groups_add(struct groups *g, const char *name, double diameter, int sure);
+void groups_add_stretch(
+	struct groups *g, const char *name, double number, double diameter);
 /* Prints the rows of a period of all groups, and begins the next. */
 void groups_report(struct groups *g, double begin, double end, int whole);
 /* The last period, up to the end of the record, which is duration, the last whole period,

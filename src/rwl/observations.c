@@ -84,7 +84,7 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
 	if (s->value_column < 0)
 		s->value_column = table_need(t, columns[s->quantity]);
 	s->sources_column = table_find(t, "sources");
-	s->verdict_column = table_find(t, "verdict");
+	s->verdict_column = verdict_column(t);
 	settle_units(s);
 }
 
@@ -142,8 +142,10 @@ int state_next(struct observations *s)
 		if (s->passed)
 			warn("%s: rows ignored because they have no diameter: %ld",
 				table_name(t), s->passed);
-		if (s->quantity == PAIR_DEBRIS)
+		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
+			verdict_equivalent();
+		}
 		check_lowest(s);
 		return 0;
 	}
