@@ -349,6 +349,17 @@ rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf 
 is "a jump beyond the threshold is a failure" "$(column rul_q95 out | grep -c '^0$'; cat err)" 38
 rescale 1 | awk 'NR > 60 { $2 -= 1.4 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
 is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat err)" 0
+# Rows at decades of the age: each forecast reaches nine times as far as all rows before it,
+# and no exponential is worth more than the last value, which is 0.1 below the next.  The
+# particles add their spread; a model of order 4 would be off by more than 2.
+awk 'BEGIN { srand(3); print "t\ty"
+	for (i = 0; i < 20; i++) print 10 ^ i "\t" 1 + 0.1 * i + 0.02 * (rand() - 0.5) }' >decades.tsv
+aopf decades.tsv >out
+at_most "the error of a forecast a decade ahead" \
+	"$(awk '!/^#/ && $1 >= 10 { d = $4 - $2; print d < 0 ? -d : d }' out | sort -g | tail -1)" 0.5
+at_most "the error of the state then" \
+	"$(awk '!/^#/ && $1 >= 1 { d = $5 - $2; print d < 0 ? -d : d }' out | sort -g | tail -1)" 0.05
+is "the order is 1 then" "$(column order out | tail -1)" 1
 # counter WIDTH LEAST SPREAD: a counter of this width, which advances by LEAST to LEAST + SPREAD
 counter() {
 	awk -v width="$1" -v least="$2" -v spread="$3" 'BEGIN { srand(2); print "t\ty"
