@@ -52,6 +52,14 @@ abrade --gap 9um --hardness 2GPa --friction 0.01 --inlet 5mm four.tsv >in.tsv
 is "a ball of 5 mm admits 10 um at a friction of 0.01, but not 30 um" \
 	"$(column mode in.tsv | tr '\n' ' ')" "rolls free rejected grooves "
 
+printf 'diameter\taspect\n10e-6\t1\n' >sphere.tsv
+abrade --gap 9um --hardness 2GPa --friction 0.1 sphere.tsv >/dev/null 2>known
+cut -f 1 sphere.tsv | abrade --gap 9um --hardness 2GPa --friction 0.1 2>err >rolls.tsv
+is "that a particle rolls is reported unless its shape is known" \
+	"$(column mode rolls.tsv) $(grep -c 'spheres, which roll' err) $(wc -l <known | tr -d ' ')" "rolls 1 0"
+printf 'diameter\tclass\n10e-6\tnon-ferrous\n' | abrade --gap 9um --hardness 2GPa --friction 0.1 >kind.tsv 2>err
+is "a non-ferrous particle is larger than its diameter, and marked" "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
+
 # An oil of a known code: as many particles as it has, the mean beside the draw.
 abrade --iso 18:16:13 --largest 70um --area 1m2 --gap 5um --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --summary s.tsv --stats st >oil.tsv
@@ -63,6 +71,11 @@ near "the particles drawn cause the mean wear" "$(awk -v a="$(cell depth_rate2 s
 	'BEGIN { print a / b }')" 1 0.2
 near "particles smaller than the gap are not drawn but counted" "$(awk -v n="$(column diameter oil.tsv | wc -l)" \
 	-v left="$(column particles_left_out st)" 'BEGIN { print n + left }')" 12500 60
+# None of the large ones is drawn for 1 mm2, but they are part of the mean.
+abrade --iso 18:16:13 --largest 70um --area 1mm2 --gap 5um --hardness 5GPa,6GPa --friction 0.1 \
+	--motion groove --summary s3.tsv 2>err >rare.tsv
+is "a mean that leaves out buried particles is marked, although none is drawn" \
+	"$? $(column mode rare.tsv | grep -c buried) $(grep -c 'the mean wear does not include' err)" "3 0 1"
 abrade --iso 18:16:13 --largest 70um --area 1m2 --load 604N --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --summary s2.tsv >oil2.tsv
 near "under a load the gap is the one at which the oil carries it on average" "$(cell mean_pressure s2.tsv)" 604 1e-3

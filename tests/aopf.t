@@ -349,6 +349,39 @@ rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf 
 is "a jump beyond the threshold is a failure" "$(column rul_q95 out | grep -c '^0$'; cat err)" 38
 rescale 1 | awk 'NR > 60 { $2 -= 1.4 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
 is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat err)" 0
+# Rows at decades of the age: each forecast reaches nine times as far as all rows before it,
+# and no exponential is worth more than the last value, which is 0.1 below the next.  The
+# particles add their spread; a model of order 4 would be off by more than 2.
+awk 'BEGIN { srand(3); print "t\ty"
+	for (i = 0; i < 20; i++) print 10 ^ i "\t" 1 + 0.1 * i + 0.02 * (rand() - 0.5) }' >decades.tsv
+aopf decades.tsv >out
+at_most "the error of a forecast a decade ahead" \
+	"$(awk '!/^#/ && $1 >= 10 { d = $4 - $2; print d < 0 ? -d : d }' out | sort -g | tail -1)" 0.5
+at_most "the error of the state then" \
+	"$(awk '!/^#/ && $1 >= 1 { d = $5 - $2; print d < 0 ? -d : d }' out | sort -g | tail -1)" 0.05
+is "the order is 1 then" "$(column order out | tail -1)" 1
+# counter WIDTH LEAST SPREAD: a counter of this width, which advances by LEAST to LEAST + SPREAD
+counter() {
+	awk -v width="$1" -v least="$2" -v spread="$3" 'BEGIN { srand(2); print "t\ty"
+		for (t = 0; t < 260; t++) { n += least + int(spread * rand()); print t "\t" n % width } }'
+}
+# 330 a row: 65536 is passed at row 198, and three rows later no life is predicted.
+counter 65536 300 60 >binary.tsv
+aopf -y 90000 --lives-only binary.tsv >out 2>err
+is "a counter of 16 bits that wraps: status" "$?" 3
+is "it is named" "$(grep -c 'where those before would have reached 65536: .* a counter seems to have wrapped' err)" 1
+is "lives end three rows after it has wrapped" \
+	"$(awk -F '\t' '$2 + 0 < last { from = NR } { last = $2 + 0 } /nan/ && from { print NR - from; exit }' out)" 2
+awk -F '\t' '{ print } $2 + 0 < last { n = 1 } n && n++ == 4 { exit } { last = $2 + 0 }' binary.tsv >begun.tsv
+fails "a series that ends then" 3 "or a counter has wrapped" aopf -y 90000 --lives-only begun.tsv
+counter 1000 30 6 >decimal.tsv
+fails "a decimal counter that wraps" 3 "would have reached 1000:" aopf -y 20000 --lives-only decimal.tsv
+awk -F '\t' '$1 > 5 && $2 < last { print "t\tevent"; print $1 "\trepair"; exit } { last = $2 }' binary.tsv >reset.tsv
+ok "a repair at that time explains a counter that starts again" \
+	aopf -y 90000 --lives-only --events reset.tsv binary.tsv
+ok "nor is a unit that is replaced close to its end a counter" aopf -y 65536 --lives-only binary.tsv
+awk -F '\t' 'NR < 150 { print; last = $2 } NR >= 150 && NR < 190 { print $1 "\t" $2 - last - 300 }' binary.tsv >replaced.tsv
+ok "nor is one that is replaced elsewhere" aopf -y 90000 --lives-only replaced.tsv
 # A series that starts at a known moment.
 {
 	printf '# start: 2026-01-02T03:04:05Z\nt\ty\n'

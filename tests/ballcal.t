@@ -8,8 +8,8 @@ value() {
 
 # Balls through the simulated sensor, pulses as duet finds them.
 for d in 60 100 160; do
-	sensorsim --uniform ${d}um:${d}um --number 40 --burst 1 --span 1ms --period 100ms --noise 5mV --seed $d |
-		duet --pulse sine --gain 1 --verbose >$d.tsv 2>err
+	sensorsim --uniform ${d}um:${d}um --number 40 --burst 1 --span 1ms --period 100ms --noise 5mV --seed $d >$d.au
+	duet --pulse sine --gain 1 --verbose $d.au >$d.tsv 2>err
 done
 ballcal --balls 60.tsv:60um --balls 100.tsv:100um --balls 160.tsv:160um --noise 5mV --pulse-duration 10ms \
 	--false-alarms 1e-3Hz >cal.tsv 2>err
@@ -21,6 +21,21 @@ rising "the interval of the exponent contains 3" "$(value exponent 3)" 3 "$(valu
 near "the threshold allows one false alarm in 1000 s" "$(value threshold)" 4.79853 1e-5
 near "half of the balls of 28.8 um are detected" "$(value d50 | awk '{ print $1 * 1e6 }')" 28.84 0.02
 near "90 % of the balls are detected at a size 8.3 % larger" "$(awk -v a="$(value d50)" -v b="$(value d90)" 'BEGIN { print b / a }')" 1.0820 1e-4
+# duet's threshold of 5.7 for 1e-9 a sample, 1e-5 a second, is 1 % higher: it searches over the delay, too.
+duet --pulse sine --gain 1 --detectable seen.tsv 100.au >100.tsv 2>err
+near "the smallest size is the one that duet detects" "$(ballcal --balls 60.tsv:60um --balls 100.tsv:100um \
+	--balls 160.tsv:160um --pulse-duration 10ms --false-alarms 1e-5Hz | awk '$1 == "d50" { print $2 * 1e6 }')" \
+	"$(awk -F '\t' '/^[0-9]/ { if ($3 >= 0.5) { print 1e6 * (d + (0.5 - p) / ($3 - p) * ($1 - d)); exit } d = $1; p = $3 }' seen.tsv)" 0.3
+sensorsim --uniform 100um:100um --number 40 --burst 1 --span 1ms --period 100ms --noise 5mV --seed 100 --phase 180deg |
+	duet --pulse sine --gain 1 >negative.tsv
+ballcal --balls 100.tsv:100um | sed '/^#/d' >right.out
+ballcal --balls negative.tsv:100um | sed '/^#/d' >cal.tsv
+near "a sensor of reversed polarity has the same constant" "$(value calibration | awk '{ print $1 * 1e-10 }')" \
+	"$(awk '$1 == "calibration" { print $2 * 1e-10 }' right.out)" 0.005
+awk -F '\t' -v OFS='\t' '/^#/ { next } n++ == 5 { $5 = -$5 } { print }' negative.tsv >mixed.tsv
+fails "pulses of either sign" 1 'want the sign of those before' ballcal --balls mixed.tsv:100um
+ballcal --balls 60.tsv:60um --balls 100.tsv:100um --balls 160.tsv:160um --noise 5mV --pulse-duration 10ms \
+	--false-alarms 1e-3Hz >cal.tsv 2>err
 near "all pulses that duet classifies as alone are used" "$(value pulses)" 120 2
 
 # Exact powers: no scatter, no doubt about the exponent.
@@ -61,6 +76,12 @@ done
 ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm --balls size3.tsv:3mm >cal.tsv 2>err
 near "the interval of three tables is that of their means" \
 	"$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print log(b / a) / 2 }')" 0.025855 1e-5
+ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm >cal.tsv 2>err
+# 12.7062, Student's t of one degree, times 0.0141421 over the root of 2
+near "two tables tell what they share about the constant" \
+	"$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print log(b / a) / 2 }')" 0.127062 1e-5
+is "but not about the exponent, which the message says" "$(grep -c 'unless a diameter or a record has an error' err)" 1
+ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm --balls size3.tsv:3mm >cal.tsv 2>err
 rising "errors that tables share leave the exponent in doubt" 0.05 "$(value exponent_p)" 1
 ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:0.7mm >cal.tsv 2>err
 is "three tables of one size do not determine the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
@@ -69,7 +90,8 @@ fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 ln -s 1.tsv same.tsv
 fails "a file by two names" 2 'the same file is given twice' ballcal --balls 1.tsv:1mm --balls same.tsv:2mm
 fails "a diameter in seconds" 2 'want a diameter' ballcal --balls 1.tsv:5s
-fails "noise without a duration" 2 'both --noise and --pulse-duration' ballcal --balls 1.tsv:1mm --noise 1V
+fails "noise without a duration" 2 '--noise requires --pulse-duration' ballcal --balls 1.tsv:1mm --noise 1V
+fails "a smallest size without noise" 1 "no column 'amplitude_se'" ballcal --balls 1.tsv:1mm --pulse-duration 1s
 fails "more false alarms than pulses" 2 'for any threshold' ballcal --balls 2.tsv:2mm --exponent 5 --noise 1V \
 	--pulse-duration 1s --false-alarms 2Hz 2>err
 fails "two pulses" 1 'at least 3' sh -c 'head -n 3 1.tsv >x; ballcal --balls x:1mm'

@@ -271,6 +271,23 @@ is "there is no rate before the end of the run-in" "$(cell out 2 mean)" nan
 ok "the run-in is skipped in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h --calibrate run-in.tsv
 near "5 um at 0.5 um/h give 10 h" "$(cell out 1 mean)" 36000 1e-6
 
+# A repair of ten rows of wear is no wear: the mean over all time would be late by a third.
+awk 'BEGIN { srand(5); print "t\tgap"
+	for (k = 0; k < 100; k++)
+		printf "%d\t%.6g\n", 3600 * k, 13e-6 + 3e-8 * (k < 50 ? k : k - 10) + 1e-8 * (rand() - 0.5) }' >repaired.tsv
+awk '/^[0-9]/ && $1 >= 180000 { $2 += 3e-7 } { print $1 "\t" $2 }' repaired.tsv >steady.tsv
+awk '/^[0-9]/ && $1 == 180000 { $2 -= 3e-7 } { print $1 "\t" $2 }' steady.tsv >outlier.tsv
+rwl --wear-rate mean --threshold-gap 17um repaired.tsv >life.tsv 2>err
+is "a repair in a mean rate: status" "$?" 3
+is "it is named" "$(grep -c 'the gap falls at once, as after a repair' err)" 1
+is "in the table too" "$(grep -c '^# doubtful: the gap falls' life.tsv)" 1
+ok "filters follow a repair" rwl --wear-rate filter --threshold-gap 17um repaired.tsv
+ok "without a repair there is no doubt" rwl --wear-rate mean --threshold-gap 17um steady.tsv
+ok "a single low reading is no repair" rwl --wear-rate mean --threshold-gap 17um outlier.tsv
+fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls at once' \
+	rwl --new --wear even.tsv --threshold-gap 17um --calibrate repaired.tsv
+ok "a calibration by one that was not" rwl --new --wear even.tsv --threshold-gap 17um --calibrate steady.tsv
+
 # Provenance: the command line rebuilds the bytes.
 rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state gap.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b

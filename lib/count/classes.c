@@ -22,9 +22,12 @@ struct classes {
 	int unknown; /* an unresolved section had no diameter */
 };
 
-static double ball(double d)
+/* Volume of a particle of this diameter to the sensor. */
+static double ball(const struct classes *c, double d)
 {
-	return M_PI / 6 * d * d * d;
+	double size = c->par.size && d < INFINITY ? c->par.size(d) : d;
+
+	return M_PI / 6 * size * size * size;
 }
 
 struct classes *classes_new(const double *edge, int n, const struct classes_par *par)
@@ -82,7 +85,7 @@ void classes_add(struct classes *c, double diameter, int sure)
 
 	for (int i = sure ? 0 : 1; k >= 0 && i < 2; i++) {
 		weighted_add(&c->class[k].number[i], w);
-		weighted_add(&c->class[k].volume[i], w * ball(diameter));
+		weighted_add(&c->class[k].volume[i], w * ball(c, diameter));
 	}
 }
 
@@ -96,13 +99,13 @@ void classes_add_stretch(struct classes *c, double number, double diameter)
 	}
 	if (k >= 0) {
 		c->class[k].unresolved += number;
-		c->class[k].unresolved_volume += number * ball(diameter);
+		c->class[k].unresolved_volume += number * ball(c, diameter);
 	}
 	for (k = 0; k < c->n; k++) {
-		double x = pow(diameter / c->edge[k], 3);
+		double x = pow(diameter / c->edge[k], 3), edge = ball(c, c->edge[k]);
 
 		c->most[k] += number * fmin(x * x, x * x * x * x);
-		c->most_volume[k] += number * ball(diameter) * x;
+		c->most_volume[k] += edge > 0 ? number * x * (edge * x) : INFINITY;
 	}
 }
 
@@ -125,14 +128,19 @@ void classes_add_possible(struct classes *c, const struct classes *from)
 	c->unknown |= from->unknown;
 }
 
+double classes_detection(const struct classes *c, int k)
+{
+	return detection_probability(&c->par.detection, c->edge[k]);
+}
+
 /* Adds up the classes from first to last. */
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
 	struct weighted number[2] = { { 0 } }, volume[2] = { { 0 } };
-	double lower = c->edge[first], upper = c->edge[last + 1], low, high;
+	double lower = c->edge[first], upper = c->edge[last + 1], low, high, squares = 0;
 	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
-	double heavy = ball(upper) / detection_probability(&c->par.detection, upper);
+	double heavy = ball(c, upper) / detection_probability(&c->par.detection, upper);
 
 	*out = (struct class_count){ 0 };
 	for (int k = first; k <= last; k++) {
@@ -142,6 +150,9 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 		}
 		out->unresolved += c->class[k].unresolved;
 		out->volume.value += c->class[k].unresolved_volume;
+		if (c->class[k].unresolved > 0) /* equal particles */
+			squares += pow(c->class[k].unresolved_volume, 2) /
+				   c->class[k].unresolved;
 	}
 	out->sure = number[0].n;
 	out->doubtful = number[1].n - number[0].n;
@@ -150,10 +161,16 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	weighted_interval(&number[0], 0, c->par.confidence, &out->number.low, &high);
 	weighted_interval(&volume[0], 0, c->par.confidence, &out->volume.low, &high);
 	weighted_interval(&number[1], weight, c->par.confidence, &low, &out->number.high);
+	out->number.possible = weight;
+	out->volume.possible = heavy;
 	if (number[1].n > 0 &&
 		isinf(upper)) /* the largest observed particle limits an open class */
 		heavy = volume[1].largest;
 	weighted_interval(&volume[1], heavy, c->par.confidence, &low, &out->volume.high);
+	out->number.largest = number[1].largest;
+	out->volume.largest = volume[1].largest;
+	out->number.squares = number[0].squares + out->unresolved;
+	out->volume.squares = volume[0].squares + squares;
 	out->number.high += c->unknown ? INFINITY : c->most[first];
 	out->volume.high += c->unknown ? INFINITY : c->most_volume[first];
 }

@@ -4,7 +4,7 @@
  * sections are described by the number and diameter of equal particles with the same
  * sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
  * inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the section
- * are larger than d, and the sum of d^3 over these is at most N d_eq^3 (d_eq / d)^3.
+ * are larger than d, and their volume is at most that of N (d_eq / d)^6 of size d.
  *
  *	struct classes *c = classes_new(edges, n, &par);
  *	classes_add(c, d, 1);
@@ -16,14 +16,20 @@
 
 #include "count/detection.h"
 
+/* Diameters and edges are those by which the sensor detects a particle; size() gives that
+ * of the sphere that it is, where the two differ, as for non-ferrous particles.  Its cube
+ * grows no faster than the sixth power of its argument. */
 struct classes_par {
 	struct detection detection;
 	double confidence;
+	double (*size)(double diameter); /* or NULL */
 };
 
-/* A value and the limits of its interval. */
+/* A value and the limits of its interval; the sum of the squared weights of its particles
+ * and the largest weight among them, and the largest one possible. */
 struct counted {
 	double value, low, high;
+	double squares, largest, possible;
 };
 
 struct class_count {
@@ -49,6 +55,9 @@ void classes_add_stretch(struct classes *c, double number, double diameter);
 /* Adds what may belong to c, too, such as particles of unknown material: it counts only
  * for the upper limit.  Both have the same classes. */
 void classes_add_possible(struct classes *c, const struct classes *from);
+
+/* Probability that the smallest particles of class k are detected. */
+double classes_detection(const struct classes *c, int k);
 
 /* Class k, or all particles of class k and above. */
 void classes_count(const struct classes *c, int k, struct class_count *out);

@@ -8,7 +8,8 @@ static const double iso_per_ml[ISO4406_CODES] = { 0.01, 0.02, 0.04, 0.08, 0.16, 
 	0.64, 1.3, 2.5, 5, 10, 20, 40, 80, 160, 320, 640, 1300, 2500, 5000, 1e4, 2e4, 4e4,
 	8e4, 1.6e5, 3.2e5, 6.4e5, 1.3e6, 2.5e6 };
 
-/* Classes 000 to 4 as printed; 5 to 12 double from a limit of class 12. */
+/* Classes 000 to 4 as printed; 5 to 12 double up to the limit of class 12.  Limits are
+ * sums of the size ranges of NAS 1638, in which halves of a particle are cut off. */
 static const double as_low[AS4059_SIZES][7] = {
 	{ 195, 390, 780, 1560, 3120, 6250, 12500 },
 	{ 76, 152, 304, 609, 1217, 2432, 4864 }, { 14, 27, 54, 109, 217, 432, 864 },
@@ -36,7 +37,7 @@ int iso4406_code(double number)
 
 double as4059_limit(int size, int k)
 {
-	double per_100ml = k < 7 ? as_low[size][k] : round(ldexp(as_top[size], k - 14));
+	double per_100ml = k < 7 ? as_low[size][k] : floor(ldexp(as_top[size], k - 14));
 
 	return per_100ml * 1e4;
 }

@@ -28,6 +28,7 @@ enum num_status line_fit(
 	if (!(xx > 0))
 		return NUM_DOMAIN;
 	l->slope = xy / xx;
+	l->spread = xx;
 	l->middle = mx;
 	l->value = my;
 	for (size_t i = 0; i < n; i++) {
@@ -41,6 +42,13 @@ enum num_status line_fit(
 	l->degrees = (double)(n - 2);
 	l->t = line_t(confidence, l->degrees);
 	return NUM_OK;
+}
+
+double line_slope_half(const struct line *l, double deviation, double confidence)
+{
+	double normal = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence);
+
+	return fmax(l->t * l->slope_se, normal * deviation / sqrt(l->spread));
 }
 
 void line_allow_unequal(

@@ -13,6 +13,7 @@
 struct line {
 	double slope, slope_se;
 	double middle, value, value_se; /* at the mean of x */
+	double spread;                  /* sum of the squared distances from it */
 	double rms;                     /* of the residuals, n - 2 degrees of freedom */
 	double degrees;                 /* of freedom of slope_se */
 	double t;                       /* Student's t of the confidence */
@@ -24,6 +25,10 @@ double line_t(double confidence, double degrees);
 /* Least squares.  NUM_DOMAIN with fewer than three points or a single x. */
 enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
+
+/* Half-width of the interval of the slope, at least that of a known standard deviation of
+ * the y. */
+double line_slope_half(const struct line *l, double deviation, double confidence);
 
 /* Lets the scatter vary with x: slope_se becomes at least the standard error that follows
  * from the residual of each point (White 1980), and t that of the degrees of freedom of

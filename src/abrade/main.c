@@ -72,8 +72,9 @@ static const struct prog prog = { "abrade",
 
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
+static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 static int doubtful;
-static double yielding, buried; /* particles */
+static double rolling, yielding, buried; /* particles */
 
 static struct abrasion_par parameters(void)
 {
@@ -149,6 +150,19 @@ static double mean_gap(const struct abrasion_par *par)
 	return found;
 }
 
+/* What the particles of an oil do on average, those included that are too rare to be
+ * drawn. */
+static void find_mean(struct abrasion_par par)
+{
+	par.gap = gap;
+	population_mean(population, &par, CLASSES, &mean);
+	if (!(mean.undescribed > 0))
+		return;
+	warn("%.3g particles per m2 of the oil yield or are buried: the mean wear does not include theirs",
+		mean.undescribed);
+	doubtful = 1;
+}
+
 struct totals {
 	double load, volume[2], number[ABRASION_MODES];
 };
@@ -170,12 +184,9 @@ static void put_summary(long realisation, const struct abrasion_par *par,
 	const struct totals *t, size_t n)
 {
 	double per_metre = slide > 0 ? 1 / (area * slide) : NAN;
-	struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 
 	if (!summary)
 		return;
-	if (population)
-		population_mean(population, par, CLASSES, &mean);
 	const double row[] = { (double)realisation, par->gap, t->load, t->load / area,
 		(double)n, t->number[ABRASION_FREE], t->number[ABRASION_REJECTED],
 		t->number[ABRASION_ROLLS], t->number[ABRASION_GROOVES],
@@ -220,6 +231,7 @@ static void run_realisation(const struct particles_in *in, long realisation)
 	for (int m = 0; m < ABRASION_MODES; m++)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
+	rolling += t.number[ABRASION_ROLLS];
 	yielding += t.number[ABRASION_YIELDS];
 	buried += t.number[ABRASION_BURIED];
 }
@@ -265,6 +277,8 @@ int main(int argc, char **argv)
 			"rolls grooves embeds yields buried volume1 volume2 "
 			"depth_rate1 depth_rate2 mean_pressure "
 			"mean_depth_rate1 mean_depth_rate2");
+	if (summary && population)
+		find_mean(par);
 	while (particles_next(source, &in, &realisation)) {
 		run_realisation(&in, realisation);
 		realisations++;
@@ -283,12 +297,17 @@ int main(int argc, char **argv)
 			doubtful = 1;
 		}
 	}
+	if (motion == ABRASION_BY_SHAPE && !particles_shaped(source) &&
+		(rolling > 0 || population))
+		warn("particles without aspect are spheres, which roll and remove nothing; "
+		     "--motion groove gives an upper bound of the wear");
 	if (yielding + buried > 0) {
 		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			yielding, buried);
 		doubtful = 1;
 	}
 	verdict_report();
+	doubtful |= verdict_equivalent();
 	particles_close(source);
 	if (table)
 		table_done(table);

@@ -36,7 +36,7 @@ struct row {
 struct source {
 	struct row *row;
 	size_t rows, room, at;
-	int apart;
+	int apart, shaped;
 	char *upstream;
 	double *diameter, *aspect; /* of the present realisation */
 	size_t held;
@@ -109,7 +109,7 @@ struct source *particles_read(const char *path)
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");
-	cv = table_find(t, "verdict");
+	cv = verdict_column(t);
 	for (; more; more = table_next(t)) {
 		struct row r = { .number = s->rows, .aspect = 1 };
 
@@ -128,6 +128,7 @@ struct source *particles_read(const char *path)
 		s->row[s->rows++] = r;
 	}
 	s->apart = cr >= 0;
+	s->shaped = ca >= 0;
 	if (table_upstream(t))
 		s->upstream = xstrdup(table_upstream(t));
 	table_close(t);
@@ -189,6 +190,11 @@ int particles_next(struct source *s, struct particles_in *in, long *realisation)
 int particles_apart(const struct source *s)
 {
 	return s->apart;
+}
+
+int particles_shaped(const struct source *s)
+{
+	return s->shaped;
 }
 
 const char *particles_upstream(const struct source *s)

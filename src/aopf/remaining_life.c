@@ -124,10 +124,11 @@ struct outlook {
 	struct outlook_state {
 		int started, direction;
 		struct rescaled scale;
-		double factor, rescaled; /* of the values from about this time on; 0: 1 */
-		double first, last, clock; /* times */
-		double heeded;             /* events up to this time are done */
-		double early;              /* the last of those without an effect */
+		double factor, range, rescaled; /* of the values, or of the counter, from
+						 * about this time on; 0: none */
+		double first, last, clock;      /* times */
+		double heeded;                  /* events up to this time are done */
+		double early;                   /* the last of those without an effect */
 		long rows;
 		long beyond;  /* successive values past the threshold */
 		long healthy; /* values short of it before the failure */
@@ -488,6 +489,11 @@ int outlook_cells(void)
 	return life_cells() + covariates_count() + (weights ? WEIGHED : 0);
 }
 
+static int is_rescaled(const struct outlook *o)
+{
+	return o->now.factor != 0 || o->now.range != 0;
+}
+
 void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell)
 {
@@ -514,11 +520,14 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 				      : 0;
 	now->failed |= now->started && now->beyond >= persist;
 	now->healthy += !isnan(in->y) && now->beyond == 0 && !now->failed;
-	if (now->factor == 0 && !isnan(in->y)) {
+	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
+		now->range = rescaled_range(
+			&now->scale, RESCALED_HALF, outlook_options.threshold);
 		now->rescaled = in->t;
 	}
-	believed = now->factor == 0 && !rescaled_doubtful(&now->scale);
+	believed = !is_rescaled(o) &&
+		   !rescaled_doubtful(&now->scale, outlook_options.threshold);
 	wanted &= believed;
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
@@ -549,15 +558,21 @@ static int check_direction(const struct outlook *o, const char *unit)
 int outlook_settle(const struct outlook *o, const char *unit)
 {
 	unsigned long due = 0;
-	int rescaled = o->now.factor != 0,
-	    doubtful = !rescaled && rescaled_doubtful(&o->now.scale),
-	    turned = check_direction(o, unit);
+	int doubtful = !is_rescaled(o) &&
+		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
+	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful;
 
 	if (doubtful)
 		warn("%s%sno life is predicted after the last rows: their unit or the gain "
-		     "may have changed",
+		     "may have changed, or a counter has wrapped",
 			unit, *unit ? ": " : "");
-	if (rescaled)
+	if (o->now.range > 0)
+		warn("%s%sthe last %d values at time %g go on from 0 where those before "
+		     "would have reached %g: no life is predicted since, because a counter "
+		     "seems to have wrapped",
+			unit, *unit ? ": " : "", RESCALED_HALF, o->now.rescaled,
+			o->now.range);
+	else if (o->now.factor != 0)
 		warn("%s%sthe last %d values at time %g are %.3g times those before, and so "
 		     "are their steps: no life is predicted since, because their unit or the "
 		     "gain seems to have changed",
@@ -575,7 +590,7 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		due += e->t <= o->now.heeded;
 	}
 	if (due <= o->now.events)
-		return rescaled || doubtful || turned;
+		return doubt;
 	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
 	     "no effect",
 		events_file, due - o->now.events, *unit ? " of unit " : "", unit);

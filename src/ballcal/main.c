@@ -31,7 +31,8 @@ static const struct opt opts[] = {
 	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
 		"confidence level of the intervals", NULL, 0 },
 	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 1e-30, 1e9, "V",
-		"standard deviation of the noise: for the smallest size", NULL, 0 },
+		"standard deviation of the noise behind the matched filter (default from amplitude_se)",
+		NULL, 0 },
 	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
 		"duration of a pulse: for the smallest size", NULL, 0 },
 	{ 0, "false-alarms", OPT_NUM, UNIT_FREQUENCY, &alarms, 1e-30, 1e12, "F",
@@ -55,7 +56,8 @@ struct pulse {
 struct pulses {
 	struct pulse *pulse;
 	size_t n, room;
-	double speed; /* sum of velocities */
+	double speed;   /* sum of velocities */
+	double squares; /* sum of the squared standard errors of the amplitudes */
 };
 
 /* Reads "FILE:DIAMETER"; fresh memory. */
@@ -77,13 +79,31 @@ static char *split(const char *text, double *diameter)
 	return path;
 }
 
+/* Magnitude; the amplitudes of a table have one sign, which a sensor that is connected
+ * the other way round, or a non-ferrous ball, makes negative. */
+static double amplitude_of(const struct table_in *t, int column, double *sign)
+{
+	double a = table_number(t, column);
+
+	if (!isfinite(a) || a == 0)
+		die(EXIT_RUN, "%s: line %ld: amplitude is %g, want a number other than 0",
+			table_name(t), table_line(t), a);
+	if (a * *sign < 0)
+		die(EXIT_RUN,
+			"%s: line %ld: amplitude is %g, want the sign of those before",
+			table_name(t), table_line(t), a);
+	*sign = a > 0 ? 1 : -1;
+	return fabs(a);
+}
+
 static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
 	char *path = split(text, &diameter);
 	struct table_in *t;
-	int more, ca, cv, cw;
+	int more, ca, cv, cw, ce = -1;
 	size_t before = p->n;
+	double sign = 0;
 
 	/* Pulses that count twice make intervals too narrow. */
 	if (file_is_read(path))
@@ -92,18 +112,22 @@ static void read_balls(struct pulses *p, const char *text, int table)
 	more = table_next(t);
 	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
 	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
-	cw = table_find(t, "verdict");
+	cw = verdict_column(t);
+	if (isnan(noise) && !isnan(duration))
+		ce = table_need_quantity(t, "amplitude_se", UNIT_VOLTAGE);
 	for (; more; more = table_next(t)) {
 		double a, v;
 
 		if (verdict_of(t, cw) != VERDICT_SURE)
 			continue;
-		a = table_positive(t, ca);
+		a = amplitude_of(t, ca, &sign);
 		v = table_positive(t, cv);
 		if (room_for(&p->pulse, &p->room, p->n + 1, sizeof *p->pulse))
 			die(EXIT_RUN, "out of memory");
 		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v), table };
 		p->speed += v;
+		if (ce >= 0)
+			p->squares += pow(table_positive(t, ce), 2);
 	}
 	if (p->n == before)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
@@ -126,8 +150,9 @@ struct doubt {
 };
 
 /* Pulses of a table may share an error, such as that of the instrument which was
- * estimated from their record.  From three tables on, their means are observations of
- * their own, and what they leave in doubt is the least that remains. */
+ * estimated from their record.  Their means are observations of
+ * their own, and what they leave in doubt is the least that remains: about the constant
+ * from two tables on, about the exponent from three. */
 static void allow_shared(const struct pulses *p, struct doubt *d)
 {
 	size_t tables = (size_t)balls.n;
@@ -201,10 +226,9 @@ int main(int argc, char **argv)
 	if (!balls.n)
 		die(EXIT_USAGE, "--balls is missing: FILE:D, a table of pulses and the "
 				"diameter of its balls");
-	if (isnan(noise) != isnan(duration))
-		die(EXIT_USAGE,
-			"the smallest size requires both --noise and --pulse-duration");
-	if (!isnan(noise) && isnan(detection_threshold(duration, alarms)))
+	if (!isnan(noise) && isnan(duration))
+		die(EXIT_USAGE, "--noise requires --pulse-duration");
+	if (!isnan(duration) && isnan(detection_threshold(duration, alarms)))
 		die(EXIT_USAGE,
 			"--false-alarms %g Hz: too many for any threshold with pulses of %g s",
 			alarms, duration);
@@ -235,14 +259,19 @@ int main(int argc, char **argv)
 		doubt.slope = l.t * l.slope_se;
 		doubt.slope_p = line_slope_p(&l, exponent);
 	}
-	if (balls.n >= 3)
+	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
 	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY;
 	if (doubt.slope_p < UNLIKELY)
-		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
-			doubt.slope_p);
+		warn("the exponent is %.3g, not %g: p = %.2g%s", l.slope, exponent,
+			doubt.slope_p,
+			balls.n < 3
+				? ", unless a diameter or a record has an error of its own"
+				: "");
 	if (lack < UNLIKELY)
-		warn("no power law fits all balls: p = %.2g", lack);
+		warn("no power law fits all balls within the scatter of their pulses, p = %.2g: "
+		     "diameters or records have errors of their own",
+			lack);
 	snprintf(unit, sizeof unit, "V.s/m^%g", exponent + 1);
 	t = table_create(NULL, opt_cmd(NULL, NULL), "1 unit unit unit 1",
 		"quantity value low high unit");
@@ -256,7 +285,9 @@ int main(int argc, char **argv)
 		put(t, "exponent_p", "1", doubt.slope_p, NAN, NAN);
 		put(t, "lack_of_fit_p", "1", lack, NAN, NAN);
 	}
-	if (!isnan(noise))
+	if (isnan(noise))
+		noise = sqrt(p.squares / (double)p.n);
+	if (!isnan(duration))
 		put_smallest(t, ln_k, doubt.constant,
 			isnan(velocity) ? p.speed / (double)p.n : velocity);
 	table_done(t);

@@ -17,6 +17,16 @@ char *material_names(void)
 	return names;
 }
 
+const struct material *material_named(const char *option, const char *name)
+{
+	const struct material *found = material_find(name);
+
+	if (!found)
+		die(EXIT_USAGE, "%s: no '%s'; there are %s", option, name,
+			material_names());
+	return found;
+}
+
 /* NAME or NAME=SHARE of length bytes. */
 static void add_part(struct material_mix *mix, const char *text, size_t length)
 {
@@ -34,10 +44,7 @@ static void add_part(struct material_mix *mix, const char *text, size_t length)
 	}
 	if (mix->n == MATERIALS_MIXED)
 		die(EXIT_USAGE, "--material: at most %d", MATERIALS_MIXED);
-	mix->part[mix->n] = material_find(word);
-	if (!mix->part[mix->n])
-		die(EXIT_USAGE, "--material: no '%s'; there are %s", word,
-			material_names());
+	mix->part[mix->n] = material_named("--material", word);
 	mix->share[mix->n++] = share;
 	free(word);
 }

@@ -12,6 +12,8 @@ struct material_mix {
 	double share[MATERIALS_MIXED]; /* 1 where none is given */
 };
 
+/* Dies where there is none of this name; option names the one that gave it. */
+const struct material *material_named(const char *option, const char *name);
 /* Dies where text names no material or all shares are 0. */
 struct material_mix materials_read(const char *text);
 /* "ferrous, steel, ...": fresh memory. */

@@ -16,11 +16,16 @@ enum verdict {
 			       it may lack a time */
 };
 
+/* The column of verdicts, or -1; finds that of classes, too. */
+int verdict_column(struct table_in *t);
 /* Of the present row; counts what is doubtful.  column may be -1. */
 enum verdict verdict_of(const struct table_in *t, int column);
 /* 1 if doubtful rows are counted in. */
 int verdict_doubtful_too(void);
 /* Says how many rows were left out, and puts them into the counters. */
 void verdict_report(void);
+/* Warns of rows of class non-ferrous, or of either sign, whose diameter is not that of
+ * the particle; 1 if there are any. */
+int verdict_equivalent(void);
 
 #endif

@@ -3,12 +3,14 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/materials.h"
 #include "common/periods.h"
 #include "common/verdicts.h"
 #include "groups.h"
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "reports.h"
+#include "signal/pulse/classify.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +24,9 @@ static struct opt_list edges;
 static double period = NAN, duration = NAN, density = NAN, d50 = NAN, threshold = NAN;
 static double detection_exponent = 3, confidence = 0.95;
 static int output, standard;
-static const char *by;
+static const char *by, *non_ferrous;
+static double excitation = 100e3;
+static const struct material *material; /* of --non-ferrous */
 
 static struct opt_list alarm_level;
 static int alarm_mass;
@@ -41,6 +45,11 @@ static const struct opt opts[] = {
 	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
 		"count separately for each value of this column: material, ...", NULL,
 		0 },
+	{ 0, "non-ferrous", OPT_TEXT, UNIT_NONE, &non_ferrous, 0, 0, "NAME",
+		"with --by class: material of the particles of class non-ferrous", NULL,
+		0 },
+	{ 0, "excitation", OPT_NUM, UNIT_FREQUENCY, &excitation, 0, 1e12, "F",
+		"of --non-ferrous: frequency of the exciting field", NULL, 0 },
 	OPT_TABLE(oil_rows),
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"density of the particles, for masses", NULL, 0 },
@@ -69,6 +78,16 @@ static const struct prog prog = { "debriscount",
 	"[file]", "table: diameter [time1] [verdict] [sources]",
 	"table: one row per period and class", opts };
 
+static double equivalent(double size)
+{
+	return classify_equivalent(material, size, excitation);
+}
+
+static double size(double equivalent)
+{
+	return classify_diameter(material, equivalent, excitation);
+}
+
 static void check_options(void)
 {
 	if (standard && edges.n)
@@ -87,17 +106,25 @@ static void check_options(void)
 			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
 		die(EXIT_USAGE, "--alarm-mass requires --alarm and --density");
+	if (non_ferrous && (!by || strcmp(by, "class") != 0))
+		die(EXIT_USAGE, "--non-ferrous requires --by class");
+	if (non_ferrous)
+		material = material_named("--non-ferrous", non_ferrous);
 	report_check((enum report_kind)output, !isnan(period));
 }
 
 static struct report_par parameters(void)
 {
 	struct report_par par = { .output = (enum report_kind)output,
+		.period = period,
+		.duration = duration,
 		.density = density,
 		.alarm = alarm_level.n ? alarm_level.v[0] : INFINITY,
 		.clear = alarm_level.n ? alarm_level.v[alarm_level.n - 1] : INFINITY,
 		.alarm_mass = alarm_mass,
-		.by = by };
+		.by = by,
+		.equivalent = material ? equivalent : NULL,
+		.size = material ? size : NULL };
 	const double *from = edges.v;
 	int n = edges.n;
 
@@ -148,9 +175,9 @@ static double or_nan(const struct table_in *t, int column,
 static double count_rows(struct table_in *t, struct groups *groups)
 {
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
-	int cv = table_find(t, "verdict"), cs = table_find(t, "sources");
+	int cv = verdict_column(t), cs = table_find(t, "sources");
 	int cb = by ? table_need(t, by) : -1;
-	double last = 0, late = 0, begin = 0, end = isnan(period) ? INFINITY : period;
+	double last = 0, late = 0, begin = 0, end = groups_next(groups);
 	long part = table_part(t);
 
 	if (ct < 0 && !isnan(period))
@@ -158,8 +185,8 @@ static double count_rows(struct table_in *t, struct groups *groups)
 			table_name(t));
 	do {
 		enum verdict v = verdict_of(t, cv);
+		const char *name;
 		double time;
-		struct classes *c;
 
 		if (v == VERDICT_FOREIGN)
 			continue;
@@ -183,17 +210,17 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		while (time >= end && !(end >= duration)) {
 			groups_report(groups, begin, end, 1);
 			begin = end;
-			end += period;
+			end = groups_next(groups);
 		}
 		late += time < begin;
 		last = fmax(last, time);
-		c = groups_at(groups, cb >= 0 ? table_text(t, cb) : "");
+		name = cb >= 0 ? table_text(t, cb) : "";
 		if (v == VERDICT_UNRESOLVED) {
-			classes_add_stretch(c, or_nan(t, cs, table_positive),
+			groups_add_stretch(groups, name, or_nan(t, cs, table_positive),
 				or_nan(t, cd, table_diameter));
 			continue;
 		}
-		classes_add(c, table_diameter(t, cd), v == VERDICT_SURE);
+		groups_add(groups, name, table_diameter(t, cd), v == VERDICT_SURE);
 		stats_add("particles", 1);
 	} while (table_next(t));
 	if (late > 0) {
@@ -235,8 +262,12 @@ int main(int argc, char **argv)
 			"--duration %g s is more than %d periods after the last particle: "
 			"--period or the unit of time is wrong",
 			duration, PERIODS_MOST);
-	groups_finish(groups, period, duration, time_column(t) >= 0 ? last : NAN);
+	groups_finish(groups, time_column(t) >= 0 ? last : NAN);
 	verdict_report();
+	if (!material &&
+		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&
+		verdict_equivalent())
+		groups_doubtful(groups);
 	table_close(t);
 	status = groups_alarm(groups) ? EXIT_ALARM : groups_status(groups);
 	groups_free(groups);

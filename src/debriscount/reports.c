@@ -127,8 +127,9 @@ static void put_classes(struct report *r, const struct classes *c, const char *g
 
 /* The codes at the value or an end of the interval: sizes that are seen in less than 90 %
  * of cases have none. */
-static void put_codes(struct report *r, const struct class_count *n, double oil_volume,
-	const int *sizes, int count, int iso, size_t end)
+static void put_codes(struct report *r, const struct classes *c,
+	const struct class_count *n, double oil_volume, const int *sizes, int count,
+	int iso, size_t end)
 {
 	char text[128] = "";
 
@@ -138,11 +139,9 @@ static void put_codes(struct report *r, const struct class_count *n, double oil_
 					: end == 1 ? here->number.low
 						   : here->number.high) /
 				oil_volume;
-		double seen = detection_probability(
-			&r->par.classes.detection, r->par.edge[sizes[k]]);
 		char one[16];
 
-		if (seen < SEEN)
+		if (classes_detection(c, sizes[k]) < SEEN)
 			snprintf(one, sizeof one, "-");
 		else if (iso && iso4406_code(number) < ISO4406_CODES)
 			snprintf(one, sizeof one, "%d", iso4406_code(number));
@@ -172,15 +171,33 @@ static void put_code_row(struct report *r, const struct classes *c, const char *
 	begin_row(r, group, begin, end);
 	table_put(r->table, v);
 	for (size_t e = 0; e < 3; e++)
-		put_codes(r, n, v, all, ISO4406_SIZES, 1, e);
+		put_codes(r, c, n, v, all, ISO4406_SIZES, 1, e);
 	for (size_t e = 0; e < 3; e++)
-		put_codes(r, n, v, all, AS4059_SIZES, 0, e);
+		put_codes(r, c, n, v, all, AS4059_SIZES, 0, e);
 	table_put(r->table, alarm);
 	table_end_row(r->table);
 }
 
+/* Standard deviation that independent particles cause in the last n rates: one more
+ * particle than was seen, as in the upper limits of counts, so that it is not 0 where
+ * none was seen. */
+static double least_scatter(
+	const struct rate_history *h, int q, size_t n, double possible)
+{
+	double sum = 0, largest = 0;
+
+	for (size_t i = h->n - n; i < h->n; i++) {
+		sum += h->column[SQUARES + q][i];
+		largest = fmax(largest, h->column[LARGEST + q][i]);
+	}
+	if (!(largest > 0))
+		largest = possible;
+	return sqrt((sum + largest * largest) / (double)n);
+}
+
+/* possible: the most that one particle adds to either rate. */
 static void put_trend(struct report *r, const struct rate_history *h, const char *group,
-	double begin, double end)
+	double begin, double end, const double possible[2])
 {
 	size_t n = window && h->n > (size_t)window ? (size_t)window : h->n;
 
@@ -189,13 +206,14 @@ static void put_trend(struct report *r, const struct rate_history *h, const char
 		double slope = NAN, half = NAN;
 		struct line l;
 
-		if (line_fit(h->time + h->n - n, h->rate[q] + h->n - n, n,
-			    r->par.classes.confidence, &l) == 0 &&
+		if (line_fit(h->column[TIME] + h->n - n, h->column[RATE + q] + h->n - n,
+			    n, r->par.classes.confidence, &l) == 0 &&
 			!isnan(l.slope)) {
 			slope = l.slope;
-			half = l.t * l.slope_se;
+			half = line_slope_half(&l, least_scatter(h, q, n, possible[q]),
+				r->par.classes.confidence);
 		}
-		table_put(r->table, h->rate[q][h->n - 1]);
+		table_put(r->table, h->column[RATE + q][h->n - 1]);
 		table_put(r->table, slope);
 		table_put(r->table, slope - half);
 		table_put(r->table, slope + half);
@@ -207,23 +225,21 @@ static void put_trend(struct report *r, const struct rate_history *h, const char
 
 /* Remembers a period; only the trend needs more than the last. */
 static void remember(
-	const struct report *r, struct rate_history *h, double time, const double rate[2])
+	const struct report *r, struct rate_history *h, const double value[HISTORY])
 {
-	double **column[3] = { &h->time, &h->rate[0], &h->rate[1] };
-	const double value[3] = { time, rate[0], rate[1] };
 	size_t at = r->par.output == REPORT_TREND ? h->n : 0;
 
 	/* The window slides: its first half is dropped once it is twice as long. */
 	if (window && at >= 2 * (size_t)window) {
-		for (int i = 0; i < 3; i++)
-			memmove(*column[i], *column[i] + window,
+		for (int i = 0; i < HISTORY; i++)
+			memmove(h->column[i], h->column[i] + window,
 				(size_t)window * sizeof(double));
 		at = (size_t)window;
 	}
-	for (int i = 0; i < 3; i++) {
-		if (room_for(column[i], &h->room[i], at + 1, sizeof(double)))
+	for (int i = 0; i < HISTORY; i++) {
+		if (room_for(&h->column[i], &h->room[i], at + 1, sizeof(double)))
 			die(EXIT_RUN, "out of memory");
-		(*column[i])[at] = value[i];
+		h->column[i][at] = value[i];
 	}
 	h->n = at + 1;
 }
@@ -231,26 +247,36 @@ static void remember(
 void report_period(struct report *r, struct rate_history *h, const char *group,
 	const struct classes *c, double begin, double end, int whole)
 {
-	double per_hour = end > begin ? hour / (end - begin) : NAN, rate[2], watched;
+	double per_hour = end > begin ? hour / (end - begin) : NAN, watched;
+	double value[HISTORY] = { 0.5 * (begin + end) / hour }, possible[2];
 	struct class_count all;
 
 	classes_count_above(c, 0, &all);
-	rate[0] = all.number.value * per_hour;
-	rate[1] = all.volume.value * r->par.density * per_hour;
-	watched = rate[r->par.alarm_mass];
-	if (watched >= r->par.alarm)
-		h->alarm = 1;
-	else if (watched < r->par.clear)
-		h->alarm = 0;
+	for (int q = 0; q < 2; q++) {
+		const struct counted *sum = q ? &all.volume : &all.number;
+		double scale = q ? r->par.density * per_hour : per_hour;
+
+		value[RATE + q] = sum->value * scale;
+		value[SQUARES + q] = sum->squares * scale * scale;
+		value[LARGEST + q] = sum->largest * scale;
+		possible[q] = sum->possible * scale;
+	}
 	if (r->par.output == REPORT_TREND && !whole)
 		return;
-	remember(r, h, 0.5 * (begin + end) / hour, rate);
+	/* In part of a period one particle may be a high rate, and none tells nothing. */
+	watched = value[RATE + r->par.alarm_mass] *
+		  (whole ? 1 : (end - begin) / r->par.period);
+	if (watched >= r->par.alarm)
+		h->alarm = 1;
+	else if (whole && watched < r->par.clear)
+		h->alarm = 0;
+	remember(r, h, value);
 	if (r->par.output == REPORT_CLASSES)
 		put_classes(r, c, group, begin, end, h->alarm);
 	else if (r->par.output == REPORT_CODES)
 		put_code_row(r, c, group, begin, end, h->alarm);
 	else
-		put_trend(r, h, group, begin, end);
+		put_trend(r, h, group, begin, end, possible);
 }
 
 void report_flush(struct report *r)
@@ -266,7 +292,6 @@ void report_close(struct report *r)
 
 void rate_history_free(struct rate_history *h)
 {
-	free(h->time);
-	free(h->rate[0]);
-	free(h->rate[1]);
+	for (int i = 0; i < HISTORY; i++)
+		free(h->column[i]);
 }

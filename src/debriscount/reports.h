@@ -16,6 +16,10 @@ struct report_par {
 	struct classes_par classes;
 	double edge[OPT_LIST_MAX];
 	int edges;
+	/* Of class non-ferrous: to the sensor, and of the sphere; or NULL. */
+	double (*equivalent)(double size), (*size)(double equivalent);
+	double period;       /* s; nan: the whole record */
+	double duration;     /* s; nan: not known */
 	double density;      /* of the particles, kg/m3; nan: no masses */
 	double alarm, clear; /* levels, per hour */
 	int alarm_mass;      /* of kg */
@@ -23,10 +27,14 @@ struct report_par {
 	char *cmd;
 };
 
+/* Columns of a history: middle of each period, h; particles and kg per hour; the sums of
+ * the squares of what each particle adds to them, and the largest of these. */
+enum { TIME, RATE, SQUARES = RATE + 2, LARGEST = SQUARES + 2, HISTORY = LARGEST + 2 };
+
 /* What is remembered of the periods of one group. */
 struct rate_history {
-	double *time, *rate[2]; /* middle of each period, h; particles and kg per hour */
-	size_t n, room[3];
+	double *column[HISTORY];
+	size_t n, room[HISTORY];
 	int alarm;
 };
 

@@ -299,11 +299,17 @@ static struct partition *read_fragments(char **made_by)
 static const double TREND = 3.3;
 
 /* Says so if the rate that is taken as constant is not; its status. */
-static int check_trend(const struct forecast *f, struct lifetable *out)
+static int check_rate(const struct forecast *f, struct lifetable *out)
 {
 	double trend = forecast_rate_trend(f);
 	const char *way = trend > 0 ? "grows" : "falls";
 
+	if (rule == RATE_MEAN && forecast_repaired(f)) {
+		table_comment(lifetable_out(out), "doubtful", "the gap falls at once");
+		warn("the gap falls at once, as after a repair, and --wear-rate mean takes "
+		     "this for wear: --wear-rate filter does not");
+		return EXIT_NOCONV;
+	}
 	if (rule == RATE_FILTER || !(fabs(trend) > TREND))
 		return 0;
 	table_comment(lifetable_out(out), "doubtful", "the rate of the gap %s", way);
@@ -356,7 +362,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_trend(f, out);
+	status |= check_rate(f, out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

@@ -4,6 +4,7 @@
 #include "common/time_unit.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
+#include "life/trend/bank.h"
 #include "num/running.h"
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +84,7 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
 	if (s->value_column < 0)
 		s->value_column = table_need(t, columns[s->quantity]);
 	s->sources_column = table_find(t, "sources");
-	s->verdict_column = table_find(t, "verdict");
+	s->verdict_column = verdict_column(t);
 	settle_units(s);
 }
 
@@ -141,8 +142,10 @@ int state_next(struct observations *s)
 		if (s->passed)
 			warn("%s: rows ignored because they have no diameter: %ld",
 				table_name(t), s->passed);
-		if (s->quantity == PAIR_DEBRIS)
+		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
+			verdict_equivalent();
+		}
 		check_lowest(s);
 		return 0;
 	}
@@ -196,11 +199,28 @@ double state_slope(const char *file, const struct pair *pair, double skip)
 	struct regression line = { 0 };
 	struct observations s;
 	double slope;
+	struct bank_par straight = { .threshold = pair_limit(pair),
+		.direction = 1,
+		.families = BANK_LINEAR,
+		.steady = 1 };
+	struct bank *bank = bank_new(&straight);
 
+	if (!bank)
+		die(EXIT_RUN, "out of memory");
 	state_open(&s, file, pair);
-	while (state_next(&s))
-		if (!isnan(s.gap) && s.t - s.first_t >= skip)
-			regression_add(&line, s.t, s.gap);
+	while (state_next(&s)) {
+		if (isnan(s.gap) || s.t - s.first_t < skip)
+			continue;
+		regression_add(&line, s.t, s.gap);
+		if (isfinite(straight.threshold) && s.quantity != PAIR_DEBRIS)
+			bank_add(bank, s.t, s.gap);
+	}
+	if (bank_repaired(bank))
+		die(EXIT_RUN,
+			"%s: the gap falls at once, as after a repair: no calibration by the "
+			"whole life",
+			file);
+	bank_free(bank);
 	slope = regression_slope(&line);
 	if (!(slope > 0) || !isfinite(slope))
 		die(EXIT_RUN, "%s: the unit for the calibration does not wear", file);

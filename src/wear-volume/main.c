@@ -32,7 +32,7 @@ struct columns {
 static struct columns find_columns(struct table_in *t)
 {
 	struct columns c = { table_find_quantity(t, "time1", UNIT_TIME),
-		table_need_quantity(t, "diameter", UNIT_LENGTH), table_find(t, "verdict"),
+		table_need_quantity(t, "diameter", UNIT_LENGTH), verdict_column(t),
 		table_find(t, "sources") };
 
 	if (c.time < 0)
@@ -136,6 +136,7 @@ int main(int argc, char **argv)
 	const char *start = table_key(t, "start");
 	struct table_out *out;
 	char *cmd;
+	int equivalent;
 
 	find_columns(t);
 	cmd = opt_cmd(table_upstream(t), NULL);
@@ -144,8 +145,9 @@ int main(int argc, char **argv)
 		table_comment(out, "start", "%s", start);
 	sum_rows(t, out);
 	verdict_report();
+	equivalent = verdict_equivalent();
 	table_close(t);
 	table_done(out);
 	free(cmd);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(equivalent ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -111,6 +111,10 @@ static void check_codes(void)
 	near(as4059_limit(0, 14), 3200000e4, 0,
 		"the limit of class 12A is 3.2 million per 100 ml");
 	near(as4059_limit(3, 7), 306e4, 0, "the limit of class 5D is 306 per 100 ml");
+	/* NAS 1638, class 7: 32000 + 5700 + 1012 + 180 + 32 per 100 ml, from 5 um on. */
+	near(as4059_limit(1, 9), 38924e4, 0, "the limit of class 7B is 38924 per 100 ml");
+	near(as4059_class(2, 6924e4), 9, 0, "6924 particles per 100 ml are class 7C");
+	near(as4059_class(3, 1225e4), 10, 0, "1225 particles per 100 ml are class 8D");
 	near(as4059_class(5, 1.5e4), 5, 0,
 		"1.5 particles per 100 ml above 70 um are class 3");
 }
@@ -195,11 +199,17 @@ static void check_few(void)
 		"intervals of 95 % contain the slope in 95 % of the cases with few points");
 }
 
+/* That of a sphere of bronze below its skin depth. */
+static double of_bronze(double d)
+{
+	return 393e-6 * pow(d / 100e-6, 0.6);
+}
+
 /* Stretches: the bound holds for any particles with the same sums of d^6 and d^12. */
-static void check_stretches(void)
+static void check_stretches(double (*size)(double))
 {
 	static const double edge[] = { 40e-6, 60e-6, 100e-6, 140e-6 };
-	struct classes_par par = { { 0, 1, 3 }, 0.95 };
+	struct classes_par par = { { 0, 1, 3 }, 0.95, size };
 	struct classes *c = classes_new(edge, 4, &par);
 	int bad = 0, close = 0;
 
@@ -216,7 +226,8 @@ static void check_stretches(void)
 			for (int k = 0; k < 4; k++)
 				if (d >= edge[k]) {
 					above[k]++;
-					volume[k] += M_PI / 6 * d * d * d;
+					volume[k] +=
+						M_PI / 6 * pow(size ? size(d) : d, 3);
 				}
 		}
 		classes_clear(c);
@@ -247,7 +258,7 @@ static void check_stretches(void)
 static void check_blind(void)
 {
 	static const double edge[] = { 90e-6, 110e-6 };
-	struct classes_par par = { { 95e-6, 6, 3 }, 0.9 };
+	struct classes_par par = { { 95e-6, 6, 3 }, 0.9, NULL };
 	struct classes *c = classes_new(edge, 2, &par);
 	double held[2] = { 0 }, mean[2] = { 0 };
 
@@ -288,7 +299,8 @@ int main(void)
 	check_lines();
 	check_unequal();
 	check_few();
-	check_stretches();
+	check_stretches(NULL);
+	check_stretches(of_bronze);
 	check_blind();
 	return tap_done();
 }

@@ -164,8 +164,15 @@ static void test_classes(void)
 	double share[] = { 1, 3 }, f = 2e5, d = 2e-4, se = 0.7;
 	struct polarisability b = material_response(of[1], d, f);
 	double size = d * cbrt(hypot(b.re, b.im)), phase = atan2(b.im, b.re);
-	double like = exp(-0.5 * phase * phase / (se * se));
+	double like = exp(-0.5 * phase * phase / (se * se)), worst = 0;
 
+	for (int i = 0; material_at(i); i++) {
+		double own = classify_diameter(material_at(i), 37e-6, 3e5);
+
+		worst = fmax(worst,
+			fabs(classify_equivalent(material_at(i), own, 3e5) / 37e-6 - 1));
+	}
+	near(worst, 0, 2e-9, "a sphere of each material has the pulse of its equivalent");
 	near(classify_ferrous(of, share, 2, size, phase, se, f), like / (like + 3), 1e-9,
 		"the probability of a ferrous particle is that of Bayes");
 	near(classify_ferrous(of, share, 2, size, 0, se, f), 1 / (1 + 3 * like), 1e-9,

@@ -81,7 +81,7 @@ double grey_forecast(const struct grey *g, double h, double gap)
 	double rate = grey_rate(g),
 	       next = grey_curve(
 		       lanes_all(grey_level(g)), lanes_all(rate), g->span + h, gap)[0],
-	       newest = g->fit.mean_y - rate * g->fit.mean_x,
+	       newest = g->n > 1 ? g->fit.mean_y - rate * g->fit.mean_x : g->oldest,
 	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
 
 	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;

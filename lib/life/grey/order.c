@@ -72,7 +72,7 @@ static void score(struct order *o, double y, double gap)
 {
 	double *error = errors_at(o, o->now.rows);
 
-	for (int p = GREY_ORDER_MIN; p <= orders_now(o); p++) {
+	for (int p = 1; p <= orders_now(o); p++) {
 		double e = y - grey_forecast(&o->fit[p], gap, gap);
 
 		error[p] = e * e;
@@ -96,11 +96,10 @@ static void fit_orders(struct order *o, int low, int high)
 	o->now.counts.tried += (unsigned long)(high - low + 1);
 }
 
-/* Rows over which orders are compared: half of those since the lowest order's first
- * forecast, at most the window. */
+/* Rows over which orders are compared: half of them, at most the window. */
 static int rows_compared(const struct order *o)
 {
-	long half = (o->now.rows - GREY_ORDER_MIN + 1) / 2;
+	long half = o->now.rows / 2;
 
 	return half < o->par.window ? (int)half : o->par.window;
 }
@@ -119,16 +118,22 @@ static double criterion(const struct order *o, int p, int rows)
 	return sum / rows;
 }
 
+/* Residuals tell nothing of the curves that pass through all points. */
+static int lowest(const struct order *o)
+{
+	return o->par.rule == ORDER_WINDOW ? 1 : GREY_ORDER_MIN;
+}
+
 static void choose(struct order *o, int high)
 {
 	int rows = rows_compared(o), best = 0;
 	double least = INFINITY;
 
-	if (o->par.rule == ORDER_FIXED || (rows < 1 && o->par.rule != ORDER_INSAMPLE)) {
+	if (o->par.rule == ORDER_FIXED || high <= lowest(o)) {
 		o->now.chosen = high;
 		return;
 	}
-	for (int p = GREY_ORDER_MIN; p <= high; p++) {
+	for (int p = lowest(o); p <= high; p++) {
 		double e = criterion(o, p, rows);
 
 		if (e < least || !best) {
@@ -153,9 +158,7 @@ void order_add(struct order *o, double y, double gap)
 		score(o, y, gap);
 	o->last[o->now.rows++ % o->par.largest] = (struct observation){ y, gap };
 	high = orders_now(o);
-	if (high < GREY_ORDER_MIN)
-		return;
-	fit_orders(o, o->par.rule == ORDER_FIXED ? high : GREY_ORDER_MIN, high);
+	fit_orders(o, o->par.rule == ORDER_FIXED ? high : 1, high);
 	choose(o, high);
 }
 
@@ -166,9 +169,7 @@ int order_chosen(const struct order *o)
 
 double order_forecast(const struct order *o, double h)
 {
-	if (o->now.chosen)
-		return grey_forecast(&o->fit[o->now.chosen], h, h);
-	return o->now.rows > 0 ? o->last[(o->now.rows - 1) % o->par.largest].y : NAN;
+	return o->now.rows > 0 ? grey_forecast(&o->fit[o->now.chosen], h, h) : NAN;
 }
 
 struct order_counts order_counts(const struct order *o)

@@ -10,7 +10,8 @@ struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
 	struct observed observed;
-	struct bank *bank; /* NULL unless RATE_FILTER and there is a limit */
+	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, of straight lines
+			    * at a constant rate, to tell repairs */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
@@ -31,9 +32,12 @@ static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
 	double limit = pair_limit(&par->pair);
-	struct bank_par bank = {
-		.direction = 1, .load = par->load, .n_loads = par->n_loads
-	};
+	int filter = par->rule == RATE_FILTER;
+	struct bank_par bank = { .direction = 1,
+		.families = filter ? BANK_ALL : BANK_LINEAR,
+		.steady = !filter,
+		.load = par->load,
+		.n_loads = par->n_loads };
 
 	if (par->scaled)
 		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
@@ -93,6 +97,8 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	double limit = pair_limit(&f->par.pair), threshold;
 
 	*passage = NULL;
+	if (f->bank && !run_in && later)
+		bank_add(f->bank, t, y);
 	if (f->par.rule != RATE_FILTER)
 		return NUM_OK;
 	if (!f->bank) {
@@ -102,8 +108,6 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 		return NUM_OK;
 	}
 	threshold = f->by_gap ? limit : pair_value(&f->par.pair, f->par.quantity, limit);
-	if (!run_in && later)
-		bank_add(f->bank, t, y);
 	if (!bank_ready(f->bank))
 		return NUM_OK;
 	*passage = f->later;
@@ -140,8 +144,9 @@ enum num_status forecast_add(
 	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
-	if (par->rule == RATE_FILTER && !f->bank && isfinite(pair_limit(pair)) &&
-		open_bank(f))
+	/* the sum of the particles so far never falls */
+	if ((par->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
+		isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
 	load_bank(f, t);
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
@@ -184,6 +189,11 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 				    ? 10 * (t - f->observed.first.t + par->skip)
 				    : INFINITY;
 	return row;
+}
+
+int forecast_repaired(const struct forecast *f)
+{
+	return f->bank && bank_repaired(f->bank);
 }
 
 double forecast_rate_trend(const struct forecast *f)

@@ -59,6 +59,8 @@ enum num_status forecast_add(
 /* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 
+/* 1 if the gap has fallen at once, and stayed there: a repair. */
+int forecast_repaired(const struct forecast *f);
 /* Trend of the rate of the gap (observed_rate_trend()). */
 double forecast_rate_trend(const struct forecast *f);
 

@@ -8,6 +8,8 @@
 #include <string.h>
 
 enum { RECENT = 4, SETTLED = 8 };
+/* States that determine a grey model; fewer are continued by the last one. */
+enum { MODEL = 3 };
 enum { MONITOR = 20 };                 /* rows of the innovation monitor and of means */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
@@ -358,7 +360,7 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	filter_update(a->filter, y, noise);
 	put_state(a, row);
 	push_past(a, y, gap);
-	if (row->order == 0) { /* too few points for a model: restart from all of them */
+	if (a->filled <= GREY_ORDER_MIN) { /* of too few points the noise is not known */
 		lost = 1;
 	} else {
 		learn_process(a, e, variance, process, noise);
@@ -396,13 +398,12 @@ static void begin(struct adaptive *a, double t, double y, struct adaptive_row *r
 	put_state(a, row);
 }
 
-/* Order of the model of the particles; 0: none yet. */
+/* Order of the model of the particles. */
 static int order_in_use(const struct adaptive *a)
 {
-	int chosen = order_chosen(a->order), depth = filter_depth(a->filter),
-	    order = chosen < depth ? chosen : depth;
+	int chosen = order_chosen(a->order), depth = filter_depth(a->filter);
 
-	return order < GREY_ORDER_MIN ? 0 : order;
+	return chosen < depth ? chosen : depth;
 }
 
 static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
@@ -413,7 +414,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
 	process = process_noise(a, noise, gap);
-	if (order > 0)
+	if (order >= MODEL)
 		forecast_particles(
 			a, a->filter, &a->gap[a->filled - 1], order, gap, noise);
 	else
@@ -485,7 +486,7 @@ enum num_status adaptive_lives(
 	size_t n = a->par.filter.particles, left;
 	struct filter *f;
 
-	if (order == 0)
+	if (order < MODEL)
 		return NUM_DOMAIN;
 	f = filter_copy(a->filter, a->draw_paths);
 	if (!f)

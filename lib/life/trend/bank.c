@@ -571,6 +571,11 @@ static int is_repaired(const struct bank *b)
 	return running == HELD_GOOD;
 }
 
+int bank_repaired(const struct bank *b)
+{
+	return b->repairs > 0 || is_repaired(b);
+}
+
 double chance_of_jump(const struct bank *b)
 {
 	double jump = damage_of(b, b->held[0].y) - b->level;

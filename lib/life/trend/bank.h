@@ -138,6 +138,9 @@ enum bank_event {
 /* 0: no effect, because fewer than three observations are known. */
 int bank_event(struct bank *b, enum bank_event event);
 
+/* 1 if the level has fallen at once, and stayed there: a repair. */
+int bank_repaired(const struct bank *b);
+
 /* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:
  * the share of these. */
 double bank_weight(const struct bank *b, enum bank_family family);

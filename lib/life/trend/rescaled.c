@@ -58,14 +58,45 @@ double rescaled_add(struct rescaled *r, double y)
 	return 0;
 }
 
-int rescaled_doubtful(const struct rescaled *r)
+/* The step over a range is like the steps before it, within their spread, by chance in 4
+ * spreads over the range of the repairs from more than half of a power of two. */
+static const double CHANCE = 1. / 32;
+
+double rescaled_range(const struct rescaled *r, int n, double threshold)
+{
+	const double *new = r->y + 2 * RESCALED_HALF - n, *old = new - RESCALED_HALF;
+	double top = new[-1],
+	       range[2] = { exp2(ceil(log2(top))), pow(10, ceil(log10(top))) },
+	       least = INFINITY, most = 0, spread, usual;
+
+	if (r->rows < RESCALED_HALF + n)
+		return 0;
+	for (int i = 1; i < RESCALED_HALF; i++) {
+		least = fmin(least, old[i] - old[i - 1]);
+		most = fmax(most, old[i] - old[i - 1]);
+	}
+	spread = most - least;
+	usual = 0.5 * (most + least);
+	for (int i = 0; i < n; i++)
+		if (!(new[i] >= 0 && new[i] <= 2 * most *(i + 1)))
+			return 0;
+	for (int k = 0; k < 2; k++)
+		if (fabs(new[0] + range[k] - top - usual) <= spread + 1e-9 * range[k] &&
+			4 * spread <= CHANCE * range[k] && (k == 1 || range[k] >= 256) &&
+			range[k] < threshold)
+			return range[k];
+	return 0;
+}
+
+int rescaled_doubtful(const struct rescaled *r, double threshold)
 {
 	double steps, change;
 
 	for (int n = 3; n < RESCALED_HALF && r->rows >= RESCALED_HALF + n; n++) {
 		change = 2 * log(factor_at(r->y + 2 * RESCALED_HALF - n, n, &steps));
-		if (fmin(fabs(change), fabs(steps)) > log(SAME) &&
-			fabs(steps - change) < fabs(steps))
+		if (rescaled_range(r, n, threshold) > 0 ||
+			(fmin(fabs(change), fabs(steps)) > log(SAME) &&
+				fabs(steps - change) < fabs(steps)))
 			return 1;
 	}
 	return 0;

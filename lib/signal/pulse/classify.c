@@ -8,27 +8,25 @@ int classify_is_ferrous(const struct material *m)
 	return m->mu >= 4; /* 2 (mu - 1) / (mu + 2) = 1, half of 2 */
 }
 
-static double height(const struct material *m, double d, double f)
+double classify_equivalent(const struct material *m, double d, double f)
 {
 	struct polarisability r = material_response(m, d, f);
 
 	return d * cbrt(hypot(r.re, r.im));
 }
 
-/* Diameter with the pulse of a ferrous sphere of this size, by bisection: heights grow
- * with the diameter. */
-static double diameter_of(const struct material *m, double size, double f)
+double classify_diameter(const struct material *m, double size, double f)
 {
 	double low = size, high = 2 * size;
 
-	while (height(m, high, f) < size && high < 1e6 * size)
+	while (classify_equivalent(m, high, f) < size && high < 1e6 * size)
 		high *= 2;
-	if (height(m, low, f) >= size)
+	if (classify_equivalent(m, low, f) >= size)
 		return low;
 	while (high - low > 1e-9 * low) {
 		double middle = 0.5 * (low + high);
 
-		if (height(m, middle, f) < size)
+		if (classify_equivalent(m, middle, f) < size)
 			low = middle;
 		else
 			high = middle;
@@ -45,8 +43,8 @@ double classify_ferrous(const struct material *const *material, const double *sh
 		return NAN;
 	for (int i = 0; i < n; i++) {
 		const struct material *m = material[i];
-		struct polarisability r =
-			material_response(m, diameter_of(m, size, frequency), frequency);
+		struct polarisability r = material_response(
+			m, classify_diameter(m, size, frequency), frequency);
 		double off = remainder(phase - atan2(r.im, r.re), 2 * M_PI) / phase_se;
 
 		if (share[i] > 0)

@@ -17,6 +17,12 @@
 /* Permeability high enough for half the pulse of the limit, or more. */
 int classify_is_ferrous(const struct material *material);
 
+/* Diameter of the ferrous sphere whose pulse is as high as that of a sphere of this
+ * material and diameter, and its inverse, by bisection: the height grows with the
+ * diameter.  m, Hz. */
+double classify_equivalent(const struct material *m, double diameter, double frequency);
+double classify_diameter(const struct material *m, double equivalent, double frequency);
+
 /* Probability that a pulse is of a ferrous one of n materials.  size: of the ferrous
  * sphere with a pulse as high, m; phase in rad, 0: of ferrous spheres without currents;
  * frequency in Hz.  NAN where the phase is farther than four standard errors from that of
