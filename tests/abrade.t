@@ -52,6 +52,11 @@ abrade --gap 9um --hardness 2GPa --friction 0.01 --inlet 5mm four.tsv >in.tsv
 is "a ball of 5 mm admits 10 um at a friction of 0.01, but not 30 um" \
 	"$(column mode in.tsv | tr '\n' ' ')" "rolls free rejected grooves "
 
+printf 'diameter\taspect\n10e-6\t1\n' >sphere.tsv
+abrade --gap 9um --hardness 2GPa --friction 0.1 sphere.tsv >/dev/null 2>known
+cut -f 1 sphere.tsv | abrade --gap 9um --hardness 2GPa --friction 0.1 2>err >rolls.tsv
+is "that a particle rolls is reported unless its shape is known" \
+	"$(column mode rolls.tsv) $(grep -c 'spheres, which roll' err) $(wc -l <known | tr -d ' ')" "rolls 1 0"
 printf 'diameter\tclass\n10e-6\tnon-ferrous\n' | abrade --gap 9um --hardness 2GPa --friction 0.1 >kind.tsv 2>err
 is "a non-ferrous particle is larger than its diameter, and marked" "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
 

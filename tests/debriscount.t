@@ -145,6 +145,18 @@ debriscount --period 1h --duration 6h --alarm 10:5 level.tsv >alarm.tsv 2>err
 is "rows after the duration are an error" "$? $(grep -c 'after --duration' err)" "1 1"
 awk -F '\t' 'NR == 1 || $1 < 21600' level.tsv | debriscount --period 1h --duration 6h --alarm 10:5 >alarm.tsv
 is "an alarm that was cleared gives status 0" $? 0
+printf 'time1\tdiameter\n0.95\t5e-5\n' | debriscount --period 0.1s --duration 1s --output trend >tenths.tsv
+is "ten periods of 0.1 s are one second" "$(column begin tenths.tsv | wc -l | tr -d ' ') $(column end tenths.tsv | tail -n 1) \
+$(column per_hour tenths.tsv | tail -n 1 | awk '{ printf "%.3f", $1 }')" "10 1 36000.000"
+# 11 particles in the last complete hour, then a second without any, and one with one
+debriscount --period 1h --duration 25201s --alarm 10:5 level.tsv >alarm.tsv
+is "an incomplete period does not clear an alarm" "$? $(column alarm alarm.tsv | tail -n 1)" "4 1"
+(awk -F '\t' 'NR == 1 || $1 < 21600' level.tsv; printf '21600.5\t50e-6\n') >last.tsv
+debriscount --period 1h --duration 21601s --alarm 10:5 last.tsv >alarm.tsv
+is "nor does a single particle in it raise one" "$? $(column alarm alarm.tsv | tail -n 1)" "0 0"
+(cat last.tsv; awk 'BEGIN { for (i = 0; i < 9; i++) print "21600.6\t50e-6" }') |
+	debriscount --period 1h --duration 21601s --alarm 10:5 >alarm.tsv
+is "but as many as a complete period would need do" "$? $(column alarm alarm.tsv | tail -n 1)" "4 1"
 debriscount --period 1h --duration 7h --density 7.8g/cm3 --alarm 5e-9 --alarm-mass level.tsv >alarm.tsv
 is "levels of mass raise an alarm" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 0 0 0 1 "
 

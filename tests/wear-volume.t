@@ -29,6 +29,11 @@ is 'times and diameters are converted from the units of the table' "$(spheres vo
 printf 'time1\tdiameter\tclass\n0.5\t1e-3\tferrous\n1.5\t1e-4\tnon-ferrous\n' | wear-volume >volume.tsv 2>err
 is 'the volume of non-ferrous particles is marked' "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
 
+printf 'time1\tdiameter\tamplitude\tverdict\n0.5\t1e-3\t1\talone\n1.5\t1e-4\t-0.1\talone\n' >signs.tsv
+wear-volume signs.tsv >volume.tsv 2>err
+is 'so is that of pulses of both signs' "$? $(grep -c 'of 1 rows are positive, of 1 negative' err)" "3 1"
+ok 'pulses of one sign, of either polarity, are not marked' sh -c 'grep -v -e "-0.1" signs.tsv | wear-volume'
+
 printf 'time1\tdiameter\tverdict\n0.5\t1e-3\talone\n0.6\t1e-3\tmisfit\n1.5\t1e-3\talone\n' >doubt.tsv
 wear-volume doubt.tsv >volume.tsv 2>err
 is 'a doubtful row is left out' "$(spheres volume.tsv)" "1.000000 "

@@ -74,7 +74,7 @@ static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
 static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 static int doubtful;
-static double yielding, buried; /* particles */
+static double rolling, yielding, buried; /* particles */
 
 static struct abrasion_par parameters(void)
 {
@@ -231,6 +231,7 @@ static void run_realisation(const struct particles_in *in, long realisation)
 	for (int m = 0; m < ABRASION_MODES; m++)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
+	rolling += t.number[ABRASION_ROLLS];
 	yielding += t.number[ABRASION_YIELDS];
 	buried += t.number[ABRASION_BURIED];
 }
@@ -296,6 +297,10 @@ int main(int argc, char **argv)
 			doubtful = 1;
 		}
 	}
+	if (motion == ABRASION_BY_SHAPE && !particles_shaped(source) &&
+		(rolling > 0 || population))
+		warn("particles without aspect are spheres, which roll and remove nothing; "
+		     "--motion groove gives an upper bound of the wear");
 	if (yielding + buried > 0) {
 		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			yielding, buried);

@@ -36,7 +36,7 @@ struct row {
 struct source {
 	struct row *row;
 	size_t rows, room, at;
-	int apart;
+	int apart, shaped;
 	char *upstream;
 	double *diameter, *aspect; /* of the present realisation */
 	size_t held;
@@ -128,6 +128,7 @@ struct source *particles_read(const char *path)
 		s->row[s->rows++] = r;
 	}
 	s->apart = cr >= 0;
+	s->shaped = ca >= 0;
 	if (table_upstream(t))
 		s->upstream = xstrdup(table_upstream(t));
 	table_close(t);
@@ -189,6 +190,11 @@ int particles_next(struct source *s, struct particles_in *in, long *realisation)
 int particles_apart(const struct source *s)
 {
 	return s->apart;
+}
+
+int particles_shaped(const struct source *s)
+{
+	return s->shaped;
 }
 
 const char *particles_upstream(const struct source *s)

@@ -30,6 +30,8 @@ struct source *particles_drawn(
 	const struct population *p, double area, double gap, uint64_t seed);
 /* The next realisation; 0 at the end. */
 int particles_next(struct source *s, struct particles_in *in, long *realisation);
+/* 1 if the table has a column of aspects. */
+int particles_shaped(const struct source *s);
 /* 1 if the table has a column of realisations. */
 int particles_apart(const struct source *s);
 const char *particles_upstream(const struct source *s); /* NULL if unknown */

@@ -5,7 +5,8 @@
 
 static int doubtful_too;
 static double doubtful, unresolved, foreign, non_ferrous;
-static int class_column = -1;
+static double signs[2]; /* rows of positive and of negative amplitude */
+static int class_column = -1, amplitude_column = -1;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
@@ -25,8 +26,12 @@ static int is_event(const char *word)
 
 int verdict_column(struct table_in *t)
 {
+	int column = table_find(t, "verdict");
+
 	class_column = table_find(t, "class");
-	return table_find(t, "verdict");
+	amplitude_column =
+		column >= 0 && class_column < 0 ? table_find(t, "amplitude") : -1;
+	return column;
 }
 
 enum verdict verdict_of(const struct table_in *t, int column)
@@ -35,8 +40,11 @@ enum verdict verdict_of(const struct table_in *t, int column)
 
 	non_ferrous += class_column >= 0 &&
 		       strcmp(table_text(t, class_column), "non-ferrous") == 0;
-	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0)
+	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0) {
+		if (amplitude_column >= 0)
+			signs[table_number(t, amplitude_column) < 0]++;
 		return VERDICT_SURE;
+	}
 	if (strcmp(word, "unresolved") == 0) {
 		unresolved++;
 		return VERDICT_UNRESOLVED;
@@ -77,5 +85,9 @@ int verdict_equivalent(void)
 		warn("%.0f rows are non-ferrous: their diameter is that of a ferrous particle "
 		     "with the same pulse, and smaller than theirs",
 			non_ferrous);
-	return non_ferrous > 0;
+	if (signs[0] > 0 && signs[1] > 0)
+		warn("amplitudes of %.0f rows are positive, of %.0f negative: those of one "
+		     "sign are non-ferrous, and larger than their diameter",
+			signs[0], signs[1]);
+	return non_ferrous > 0 || (signs[0] > 0 && signs[1] > 0);
 }

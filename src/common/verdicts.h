@@ -24,8 +24,8 @@ enum verdict verdict_of(const struct table_in *t, int column);
 int verdict_doubtful_too(void);
 /* Says how many rows were left out, and puts them into the counters. */
 void verdict_report(void);
-/* Warns of rows of class non-ferrous, whose diameter is not that of the particle; 1 if
- * there are any. */
+/* Warns of rows of class non-ferrous, or of either sign, whose diameter is not that of
+ * the particle; 1 if there are any. */
 int verdict_equivalent(void);
 
 #endif

@@ -19,6 +19,7 @@ struct groups {
 	struct group *group;
 	size_t n, room;
 	double reported; /* end of the last period that was printed */
+	double periods;  /* that were printed */
 	int doubtful;
 };
 
@@ -118,25 +119,39 @@ void groups_report(struct groups *g, double begin, double end, int whole)
 	report_flush(g->report);
 	stats_add("periods", 1);
 	g->reported = end;
+	g->periods++;
 }
 
-void groups_finish(struct groups *g, double period, double duration, double last)
+double groups_next(const struct groups *g)
 {
-	double end = !isnan(duration) ? duration : last;
+	double period = g->par.period, duration = g->par.duration;
+	double end = isnan(period) ? INFINITY : (g->periods + 1) * period;
 
-	for (; !isnan(duration) && g->reported + period <= duration;)
-		groups_report(g, g->reported, g->reported + period, 1);
-	if (isnan(period) || (!isnan(duration) && end > g->reported))
-		groups_report(g, g->reported, end, isnan(period));
-	else if (isnan(duration)) {
-		if (g->reported == 0)
-			warn("no period of %g s is complete: the last particle is at %g s; "
-			     "--duration tells when the record ends",
-				period, last);
-		note("particles after %g s belong to an incomplete period and are left out",
-			g->reported);
-		stats_set("periods_left_out", 1);
+	/* ten periods of 0.1 s are a second; 1e7 periods differ from it by 1e-9 of one */
+	return fabs(end - duration) < 1e-6 * period ? duration : end;
+}
+
+void groups_finish(struct groups *g, double last)
+{
+	double period = g->par.period, duration = g->par.duration;
+
+	if (isnan(period)) {
+		groups_report(g, 0, isnan(duration) ? last : duration, 1);
+		return;
 	}
+	while (groups_next(g) <= duration)
+		groups_report(g, g->reported, groups_next(g), 1);
+	if (duration > g->reported)
+		groups_report(g, g->reported, duration, 0);
+	if (!isnan(duration))
+		return;
+	if (g->reported == 0)
+		warn("no period of %g s is complete: the last particle is at %g s; "
+		     "--duration tells when the record ends",
+			period, last);
+	note("particles after %g s belong to an incomplete period and are left out",
+		g->reported);
+	stats_set("periods_left_out", 1);
 }
 
 void groups_doubtful(struct groups *g)

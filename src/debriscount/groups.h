@@ -15,9 +15,11 @@ void groups_add_stretch(
 	struct groups *g, const char *name, double number, double diameter);
 /* Prints the rows of a period of all groups, and begins the next. */
 void groups_report(struct groups *g, double begin, double end, int whole);
-/* The last period, up to the end of the record, which is duration, the last whole period,
- * or the last particle. */
-void groups_finish(struct groups *g, double period, double duration, double last);
+/* End of the period that begins now; infinite without --period. */
+double groups_next(const struct groups *g);
+/* The periods that are left, up to the end of the record, which is duration, the last
+ * whole period, or the last particle. */
+void groups_finish(struct groups *g, double last);
 void groups_doubtful(struct groups *g);
 int groups_status(const struct groups *g); /* 0, or 3 where something was doubtful */
 int groups_alarm(const struct groups *g);  /* 1 if an alarm is active */

@@ -116,6 +116,8 @@ static void check_options(void)
 static struct report_par parameters(void)
 {
 	struct report_par par = { .output = (enum report_kind)output,
+		.period = period,
+		.duration = duration,
 		.density = density,
 		.alarm = alarm_level.n ? alarm_level.v[0] : INFINITY,
 		.clear = alarm_level.n ? alarm_level.v[alarm_level.n - 1] : INFINITY,
@@ -175,7 +177,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
 	int cv = verdict_column(t), cs = table_find(t, "sources");
 	int cb = by ? table_need(t, by) : -1;
-	double last = 0, late = 0, begin = 0, end = isnan(period) ? INFINITY : period;
+	double last = 0, late = 0, begin = 0, end = groups_next(groups);
 	long part = table_part(t);
 
 	if (ct < 0 && !isnan(period))
@@ -208,7 +210,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		while (time >= end && !(end >= duration)) {
 			groups_report(groups, begin, end, 1);
 			begin = end;
-			end += period;
+			end = groups_next(groups);
 		}
 		late += time < begin;
 		last = fmax(last, time);
@@ -260,7 +262,7 @@ int main(int argc, char **argv)
 			"--duration %g s is more than %d periods after the last particle: "
 			"--period or the unit of time is wrong",
 			duration, PERIODS_MOST);
-	groups_finish(groups, period, duration, time_column(t) >= 0 ? last : NAN);
+	groups_finish(groups, time_column(t) >= 0 ? last : NAN);
 	verdict_report();
 	if (!material &&
 		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&

@@ -18,6 +18,8 @@ struct report_par {
 	int edges;
 	/* Of class non-ferrous: to the sensor, and of the sphere; or NULL. */
 	double (*equivalent)(double size), (*size)(double equivalent);
+	double period;       /* s; nan: the whole record */
+	double duration;     /* s; nan: not known */
 	double density;      /* of the particles, kg/m3; nan: no masses */
 	double alarm, clear; /* levels, per hour */
 	int alarm_mass;      /* of kg */

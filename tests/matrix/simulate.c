@@ -64,6 +64,7 @@ static struct option {
 	{ "jump", 1 },      /* factor of the velocity from the middle of the record on */
 	{ "gaindrift", 0 }, /* change of the gain of sensor 2 */
 	{ "noiserise", 1 }, /* noise at the end over noise at the beginning */
+	{ "crosstalk", 0 }, /* share of either channel on the other */
 	{ "clip", 0 },      /* limit, V; 0: none */
 	{ "bubbles", 0 },   /* events per second */
 	{ "shocks", 0 },    /* ... */
@@ -644,6 +645,18 @@ static void add_hum(double *x, long N)
 	}
 }
 
+static void mix_channels(double *x, long N)
+{
+	double share = get("crosstalk");
+
+	for (long i = 0; i < N; i++) {
+		double first = x[2 * i];
+
+		x[2 * i] += share * x[2 * i + 1];
+		x[2 * i + 1] += share * first;
+	}
+}
+
 /* Clipping, dropouts and the converter; masked[] becomes 1 where samples are lost. */
 static void spoil(double *x, long N, unsigned char *masked)
 {
@@ -959,6 +972,7 @@ int main(int argc, char **argv)
 		draw_event(&events[i], x, N);
 	add_noise(x, N);
 	add_hum(x, N);
+	mix_channels(x, N);
 	spoil(x, N, masked);
 	for (size_t i = 0; i < count; i++)
 		if (events[i].kind == PARTICLE)

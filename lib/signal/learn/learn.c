@@ -102,15 +102,18 @@ static void tune(
 		minimise(ex, &ex->scene.gain, step, rounds);
 }
 
-/* Takes this pulse, as the whitened record has it at the present duration. */
+/* Takes this pulse, reversed or not, as the whitened record has it at the present
+ * duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse)
 {
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
 
 	shape_free(c->shape);
 	c->pulse = pulse;
-	c->measured = c->reversed = 0;
+	c->measured = 0;
 	c->shape = plain;
+	if (plain && c->reversed)
+		shape_scale(plain, -1);
 	if (plain && c->whitening.tap) {
 		c->shape = shape_filter(plain, fmax(c->duration, SHAPE_SHORTEST),
 			c->whitening.seen, c->whitening.seen_half);
@@ -144,9 +147,10 @@ static void take_template(struct calibration *c, struct template *found)
 }
 
 /* A description of some clear examples: by a pulse of sensor.h or that of the single
- * event of this number; signs: 1 if it may be of either sign. */
+ * event of this number; signs: 1 if it may be of either sign; upright: how many more of
+ * the pulses that stand alone are positive than negative. */
 struct guess {
-	int pulse, single, signs;
+	int pulse, reversed, single, signs, upright;
 	double width, duration, gain, penalised, chi2;
 };
 
@@ -192,6 +196,9 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 	tune(par, ex, 0.1, 3);
 	guess.chi2 = examples_fit(ex, 0.003);
 	guess.penalised = ex->penalised;
+	for (int i = 0; i < ex->count; i++)
+		if (ex->example[i].m == 1)
+			guess.upright += ex->example[i].pulse[0].a > 0 ? 1 : -1;
 	guess.duration = ex->scene.duration;
 	guess.gain = ex->scene.gain * c->noise[1] / c->noise[0];
 	if (guess.penalised < need * best->penalised)
@@ -205,7 +212,10 @@ static enum separate_status try_known(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
 	double duration, double need, struct calibration *c, struct guess *best)
 {
-	struct guess guess = { .pulse = pulse, .signs = ex->signs, .width = c->width };
+	struct guess guess = { .pulse = pulse,
+		.reversed = c->reversed,
+		.signs = ex->signs,
+		.width = c->width };
 	enum separate_status status;
 
 	c->duration = duration;
@@ -241,15 +251,18 @@ static enum separate_status learn_crowd(const struct calibrate_par *par,
 	return SEPARATE_OK;
 }
 
-/* Finds the shape that describes some clear examples best, and its approximate duration.
+/* Finds the shape that describes some clear examples best, reversed or not, and its
+ * approximate duration.
  * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
- */
+ * Where more of the pulses that stand alone are positive, the shape is not reversed: both
+ * describe single pulses equally well. */
 static enum separate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.7, 1.4 };
+	const int reversed = hint && hint->reversed;
 	struct guess best = { .pulse = c->pulse,
 		.width = c->width,
 		.duration = c->duration,
@@ -267,25 +280,30 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 		if (ex->pieces)
 			return learn_crowd(par, ex, y1, y2, n, c);
 	}
+	c->reversed = reversed;
 	if (hint && hint->events && hint->elsewhere)
 		status = try_known(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
-		for (int p = 0; p < PULSE_SHAPES; p++) {
+		for (int i = 0; i < (ex->signs ? 1 : 2) * PULSE_SHAPES; i++) {
+			const int p = i % PULSE_SHAPES;
 			double duration = par->duration;
 
+			c->reversed = reversed != (i != p);
 			if (isnan(duration)) {
 				if (learn_duration(p, low, &duration) != NUM_OK)
 					return SEPARATE_MEMORY;
 				duration *= factor[k];
 			}
-			if (best.chi2 <= (k ? 2 : 1.1) || status != SEPARATE_OK)
+			if (best.chi2 <= (k ? 2 : 1.1) || status != SEPARATE_OK ||
+				(i != p && best.upright > 0))
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
 				status = try_known(par, ex, y1, y2, n, p, duration,
 					k ? 0.5 : 1, c, &best);
 		}
+	c->reversed = best.reversed;
 	c->width = best.width;
 	c->duration = best.duration;
 	c->gain = best.gain;

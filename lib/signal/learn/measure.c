@@ -514,7 +514,8 @@ static int is_known(const struct template *found)
 {
 	double near = found->events <= 2 * TEMPLATE_LEAST ? NEAR_OF_FEW : NEAR;
 
-	return !found->reversed && found->left < near;
+	/* Pulses of either sign take more work, by a known shape reversed too much. */
+	return !(found->reversed && found->signs) && found->left < near;
 }
 
 /* Takes the pulse from the record if it is not given; a pulse of sensor.h that fits as
