@@ -360,6 +360,11 @@ at_most "the error of a forecast a decade ahead" \
 at_most "the error of the state then" \
 	"$(awk '!/^#/ && $1 >= 1 { d = $5 - $2; print d < 0 ? -d : d }' out | sort -g | tail -1)" 0.05
 is "the order is 1 then" "$(column order out | tail -1)" 1
+# Wear that began beyond its threshold would never end with the direction of the first value.
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 12; t++) print t "\t" 5 + t / 10 }' >passed.tsv
+fails "a threshold that had been passed before" 3 "move away from the threshold: with --direction up" \
+	aopf -y 3 --lives-only passed.tsv
+ok "a direction that is given is right" aopf -y 3 --direction up --lives-only passed.tsv
 # counter WIDTH LEAST SPREAD: a counter of this width, which advances by LEAST to LEAST + SPREAD
 counter() {
 	awk -v width="$1" -v least="$2" -v spread="$3" 'BEGIN { srand(2); print "t\ty"

@@ -133,6 +133,8 @@ struct outlook {
 		long beyond;  /* successive values past the threshold */
 		long healthy; /* values short of it before the failure */
 		int failed, alarm;
+		int never;             /* the last life is infinite with certainty */
+		double origin, newest; /* the first value and the last */
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
@@ -429,6 +431,7 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 	while (ends > 0 && isinf(life[ends - 1]))
 		ends--;
 	*cell++ = (double)(n - ends) / n;
+	o->now.never = ends == 0;
 	while (failures < n && life[failures] <= mission / timeunit())
 		failures++;
 	if (!isnan(mission))
@@ -508,12 +511,15 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 
 		now->started = 1;
 		now->direction = up ? 1 : -1;
+		now->origin = in->y;
 		start(o);
 	}
 	if (now->started)
 		learn(o, in, filtered);
 	now->rows++;
 	now->last = in->t;
+	if (!isnan(in->y))
+		now->newest = in->y;
 	if (!isnan(in->y))
 		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
 				      ? now->beyond + 1
@@ -542,9 +548,18 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		put_weights(o, cell + life_cells() + covariates_count());
 }
 
-/* Says so if one or two bad values at the start may have told the wrong direction. */
+/* Says so if the first values may have told the wrong direction, because one or two were
+ * bad or the threshold had been passed before. */
 static int check_direction(const struct outlook *o, const char *unit)
 {
+	if (direction == AUTO && o->now.never &&
+		o->now.direction * (o->now.newest - o->now.origin) < 0) {
+		warn("%s%sthe values move away from the threshold: with --direction %s it "
+		     "had been passed before",
+			unit, *unit ? ": " : "",
+			directions[o->now.direction > 0 ? DOWN : UP]);
+		return 1;
+	}
 	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
 		return 0;
 	warn("%s%sthe unit fails after value %ld if the threshold is approached from %s, "
