@@ -244,8 +244,6 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	ex->drift = 0;
-	if (isnan(par->gain))
-		tune_rare(par, ex, chi2_of_drift, 0, 0.1);
 	tune(par, ex, 0.1, 3);
 	guess.chi2 = examples_fit(ex, 0.003);
 	guess.penalised = ex->penalised;
@@ -309,7 +307,8 @@ static enum separate_status learn_crowd(const struct calibrate_par *par,
  * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
  * Where more of the pulses that stand alone are positive, the shape is not reversed: both
- * describe single pulses equally well. */
+ * describe single pulses equally well.  Other durations are tried as the first one
+ * described them better. */
 static enum separate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
@@ -343,6 +342,8 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 			double duration = par->duration;
 
 			c->reversed = reversed != (i != p);
+			if (k > 0 && c->reversed != best.reversed)
+				continue;
 			if (isnan(duration)) {
 				if (learn_duration(p, low, &duration) != NUM_OK)
 					return SEPARATE_MEMORY;
