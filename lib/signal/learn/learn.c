@@ -308,13 +308,15 @@ static enum separate_status learn_crowd(const struct calibrate_par *par,
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
  * Where more of the pulses that stand alone are positive, the shape is not reversed: both
  * describe single pulses equally well.  Other durations are tried as the first one
- * described them better. */
+ * described them better, and one of each shape in whitened records: they take more work.
+ */
 static enum separate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.7, 1.4 };
 	const int reversed = hint && hint->reversed;
+	const int signs = ex->signs || c->whitening.tap ? 1 : 2;
 	struct guess best = { .pulse = c->pulse,
 		.width = c->width,
 		.duration = c->duration,
@@ -337,7 +339,7 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 		status = try_known(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
-		for (int i = 0; i < (ex->signs ? 1 : 2) * PULSE_SHAPES; i++) {
+		for (int i = 0; i < signs * PULSE_SHAPES; i++) {
 			const int p = i % PULSE_SHAPES;
 			double duration = par->duration;
 
@@ -542,24 +544,29 @@ static void hide_spikes(struct examples *ex, const double *y1, const double *y2,
 	}
 }
 
-/* Distance of the pulses of an example that holds two, in durations; else NAN. */
-static double distance(const struct examples *ex, const struct example *e)
+/* 1 if both examples hold two pulses, which follow each other at the same distance and
+ * with the same ratio of amplitudes, within a tenth.  Pulses of particles do not: their
+ * sizes differ by more. */
+static int same_pair(double duration, const struct example *a, const struct example *b)
 {
-	return e->m == 2 ? fabs(e->pulse[1].t - e->pulse[0].t) / ex->scene.duration : NAN;
+	const struct joint_pulse *p = a->pulse, *q = b->pulse;
+
+	return a->m == 2 && b->m == 2 &&
+	       fabs(p[1].t - p[0].t - (q[1].t - q[0].t)) < SHAPE_FINEST * duration &&
+	       fabs(p[1].a * q[0].a / (p[0].a * q[1].a) - 1) < 0.1;
 }
 
-/* 1 if in most examples one pulse follows another at the same distance: each is half of
- * another pulse.  Distances of particles do not recur. */
+/* 1 if most examples hold the same pair: each pulse is half of another one. */
 static int are_halves(const struct examples *ex)
 {
 	int most = 0;
 
 	for (int i = 0; i < ex->count; i++) {
-		double one = distance(ex, &ex->example[i]);
 		int same = 0;
 
 		for (int k = 0; k < ex->count; k++)
-			same += fabs(distance(ex, &ex->example[k]) - one) < SHAPE_FINEST;
+			same += same_pair(
+				ex->scene.duration, &ex->example[i], &ex->example[k]);
 		most = same > most ? same : most;
 	}
 	return ex->corrected && 2 * most > ex->count;
