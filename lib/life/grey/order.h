@@ -4,8 +4,10 @@
  * (one backward pass, O(1) per order), so the choice depends on the observations alone
  * and not on random numbers.  Orders 1 and 2 forecast the newest one itself, which is
  * best where no exponential describes the series, as with rows at a constant ratio of
- * their ages.  Rules: window    smallest mean squared error over the last rows, all
- * orders over the same rows; the order changes only when that falls by the hysteresis
+ * their ages.  Rules:
+ *
+ *   window    smallest mean squared error over the last rows, all orders over the same
+ *             rows; the order changes only when that falls by the hysteresis
  *   insample  smallest mean squared residual of the fit itself, from order 4 on
  *   fixed     always the largest order
  */
