@@ -68,7 +68,7 @@ fi
 # Sensor 1 is clipped in one hour; an alarm by rate is raised, reported once and cleared.
 sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^[0-9]/ && $1 >= 2 && $1 < 3 && $2 > 0.3 { $2 = 0.3 }
 	/^[0-9]/ && $1 < 4 { print } !/^[0-9]/ { print }' | sigconvert --from text >clipped.au
-watch --state clipped --alarm-rate 7:2 --on-alarm 'echo "$WEARWATCH_ALARM" >>told' clipped.au 2>said
+watch --state clipped --alarm-rate 6:2 --on-alarm 'echo "$WEARWATCH_ALARM" >>told' clipped.au 2>said
 is 'an alarm is active at the end' $? 4
 is 'the command of the alarm is called once' "$(cat told)" 'rate '
 like 'clipped samples are reported' "$(cat said)" 'channel 1 is clipped'
