@@ -139,8 +139,8 @@ void joint_pair_odds(
 double joint_work(const struct joint *joint);
 
 /* Of the pulses of the last fit: by which share their sum at sensor 2 exceeds gain times
- * that at sensor 1, and the standard error of this.  What pulses that overlap change of
- * the share is lost: it is too small then. */
+ * that at sensor 1, and the standard error of this.  The fit of pulses that overlap takes
+ * up a part of the share, which is too small then. */
 void joint_gain_error(const struct joint *joint, double *share, double *se);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */

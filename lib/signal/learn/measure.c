@@ -548,7 +548,8 @@ static int is_known(const struct template *found)
 {
 	double near = found->events <= 2 * TEMPLATE_LEAST ? NEAR_OF_FEW : NEAR;
 
-	/* Pulses of either sign take more work, by a known shape reversed too much. */
+	/* With pulses of either sign, a known shape that is reversed takes too much work.
+	 */
 	return !(found->reversed && found->signs) && found->left < near;
 }
 
