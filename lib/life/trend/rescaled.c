@@ -58,8 +58,10 @@ double rescaled_add(struct rescaled *r, double y)
 	return 0;
 }
 
-/* The step over a range is like the steps before it, within their spread, by chance in 4
- * spreads over the range of the repairs from more than half of a power of two. */
+/* Largest probability that a repair looks like a counter that wraps.  The highest value
+ * before it lies anywhere in the upper half of the range of the counter; in a part of it
+ * two spreads of the steps wide, that is, with a probability of 4 spreads / range, the
+ * step across the end of the range agrees with those before. */
 static const double CHANCE = 1. / 32;
 
 double rescaled_range(const struct rescaled *r, int n, double threshold)
