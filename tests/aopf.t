@@ -195,14 +195,22 @@ done >changes
 is "a hysteresis of 1 keeps the first order" "$(sed -n 3p changes)" 0
 rising "a hysteresis of 0.3 at least halves the changes of order" 1 "$(sed -n 2p changes)" $(($(sed -n 1p changes) / 2))
 
-# A peak at 8 and a step at 12: life ends with the K-th value in a row beyond the threshold,
-# and is predicted for the rows before.
+# A peak at 8 and a step at 12: life is over from the K-th value in a row beyond the threshold
+# on, and is predicted for the other rows.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 20; t++) print t "\t" (t == 8 || t >= 12 ? 3 : 1) }' >step.tsv
 for k in 1 2 3 4; do
 	aopf -y 2 --direction up --persist $k --stats step.stats step.tsv >/dev/null
 	column lives step.stats
 done >lives
-is "lives are predicted until 1, 2, 3, 4 values persist beyond the threshold" "$(tr '\n' ' ' <lives)" "8 13 14 15 "
+is "lives are predicted unless 1, 2, 3, 4 values persist beyond the threshold" "$(tr '\n' ' ' <lives)" "11 13 14 15 "
+# The end is 60 rows away, whatever a burst of five rows said of it.
+awk 'BEGIN { srand(8); print "t\ty"
+	for (t = 0; t < 90; t++) print t "\t" t / 150 + 0.01 * (rand() - 0.5) + (t > 40 && t < 46 ? 0.9 : 0) }' |
+	aopf -y 1 --lives-only >out
+is "a burst of bad values beyond the threshold is a failure while it lasts" \
+	"$(awk -F '\t' '$5 == 0 { printf "%s ", $1 }' out)" "43 44 45 "
+# at .6 of the life of straight wear a median is 4 % of it off, see the page
+near "and is none afterwards" "$(column rul_q50 out | tail -1)" 60 15
 
 # Ten times the 20 steps so far: an end 199 ahead is predicted, one at 201 is not.
 # One family alone has no changes of regime.

@@ -131,7 +131,7 @@ struct outlook {
 		double early;                   /* the last of those without an effect */
 		long rows;
 		long beyond;  /* successive values past the threshold */
-		long healthy; /* values short of it before the failure */
+		long healthy; /* values short of it */
 		int failed, alarm;
 		int never;             /* the last life is infinite with certainty */
 		double origin, newest; /* the first value and the last */
@@ -524,8 +524,8 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
 				      ? now->beyond + 1
 				      : 0;
-	now->failed |= now->started && now->beyond >= persist;
-	now->healthy += !isnan(in->y) && now->beyond == 0 && !now->failed;
+	now->failed = now->started && now->beyond >= persist;
+	now->healthy += !isnan(in->y) && now->beyond == 0;
 	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
 		now->range = rescaled_range(
