@@ -309,14 +309,16 @@ fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
 fails "a column of units that is missing" 1 "no column 'unit'" aopf --unit unit exp.tsv
 
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
-ok 'values that overflow are accepted' aopf -y 5 --lives-only enormous.tsv
+fails 'values that overflow are accepted, but alternate' 3 'every other value' aopf -y 5 --lives-only enormous.tsv
+aopf -y 5 --lives-only enormous.tsv >out 2>err
 awk '$1 == 28' out >last
 awk 'NR == 1 || $2 < 0' enormous.tsv | aopf -y 5 --lives-only | awk '$1 == 28' >want
 ok 'values that overflow are outliers: the others alone give the same life' cmp last want
 # A sensor at its ceiling says nothing: the wear goes on.
 awk 'BEGIN { srand(7); print "t\ty"
 	for (t = 0; t < 80; t++) { y = t / 100 + 0.01 * (rand() - 0.5); print t "\t" (y > 0.6 ? 0.6 : y) } }' >ceiling.tsv
-aopf -y 1 --lives-only ceiling.tsv >out
+fails "a sensor at its ceiling" 3 "the last values are equal: the sensor sticks" aopf -y 1 --lives-only ceiling.tsv
+aopf -y 1 --lives-only ceiling.tsv >out 2>err
 near "the life goes on below the ceiling of a sensor" "$(column rul_q50 out | tail -1)" 20 8
 awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv | aopf -y 1 --lives-only >out
 ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 { exit !($4 > 60) }' out
@@ -329,6 +331,21 @@ ok "while rows are held back the end may be near" awk '!/^#/ && $1 == 82 { exit 
 # Rounded readings repeat too, and count.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 80; t++) print t "\t" int(t / 16) / 6 }' | aopf -y 1 --lives-only >out
 ok "coarse readings of an end at 96 hold it" awk '!/^#/ && $1 == 79 { exit !(3 < $3 && $3 < 17 && 17 < $5) }' out
+
+# mixed MANY: the readings of MANY machines in turn, as one series
+mixed() {
+	awk -v many="$1" 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
+		print t "\t" t / 200 * (1 + t % many) + 0.02 * (rand() - 0.5) }'
+}
+mixed 2 >mixed.tsv
+fails "two machines in one series" 3 "every other value before .* on a course of its own: values of two machines" \
+	aopf -y 1 --lives-only mixed.tsv
+ok "one machine" sh -c "aopf -y 1 --lives-only 2>err >out <<-END && ! grep . err
+$(mixed 1)
+END"
+printf 'unit\tt\ty\na\t0\t1\na\t1\t1\nb\t2\t1\n' >units.tsv
+fails "two units that no option tells apart" 1 "units.tsv: line 4: unit 'b' after 'a': want rows of one unit" aopf units.tsv
+ok "a single one needs no option" sh -c 'head -3 units.tsv | aopf'
 
 # rescale FACTOR: a series whose unit changes at row 60
 rescale() {
