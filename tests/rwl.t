@@ -386,4 +386,6 @@ done
 	done
 } >started.tsv
 is "the start of a series is carried to the lives" "$(rwl started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
+printf 'unit\tt\tleakage\na\t0\t3e-5\nb\t1\t3e-5\n' >units.tsv
+fails "the state of two units" 1 "units.tsv: line 3: unit 'b' after 'a': want rows of one unit" rwl units.tsv
 done_testing

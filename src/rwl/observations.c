@@ -152,6 +152,7 @@ int state_next(struct observations *s)
 		check_lowest(s);
 		return 0;
 	}
+	table_one_unit(t);
 	time = table_number(t, s->time_column) * s->time_scale;
 	value = table_number(t, s->value_column) * s->scale;
 	if (!isfinite(time))
