@@ -88,7 +88,7 @@ static void check_options(void)
 		die(EXIT_USAGE,
 			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
 	opt_require("d50", "detection-exponent");
-	if (density < 100)
+	if (density > 1 && density < 100 && opt_given_bare("density"))
 		warn("--density %g kg/m3 is lighter than any particle: is %gg/cm3 meant?",
 			density, density);
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
