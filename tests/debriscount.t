@@ -219,5 +219,12 @@ fails "a section of balls of 10 metres" 1 'line 2: diameter is 10 m, want metres
 printf '# units: um\ndiameter\n37.9\n38\n70\n' >edge.tsv
 is "a diameter in another unit is in the class that begins with it" \
 	"$(debriscount --standard as4059 edge.tsv | column rows /dev/stdin | tr '\n' ' ')" "0 0 0 1 1 1 "
+printf 'diameter\n1e-5\n5e-5\n' >faint.tsv
+debriscount --duration 10s --d50 50um --detection-threshold 5 faint.tsv >out 2>err
+is "a particle that the sensor hardly detects is marked" "$? $(grep -c '^debriscount: 1 particles are of a size' err)" "3 1"
+debriscount --duration 10s --density 7.8 faint.tsv >out 2>err
+is "a density in g/cm3 without its unit gives a hint" "$(grep -c 'is 7.8g/cm3 meant' err)" 1
+fails "an excitation of no material" 2 '\--excitation requires --non-ferrous' \
+	debriscount --duration 10s --excitation 1MHz faint.tsv
 fails "a flow in litres without its unit" 2 'flow 60: want' debriscount --flow 60 /dev/null
 done_testing
