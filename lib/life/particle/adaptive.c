@@ -329,7 +329,7 @@ static void observe(struct adaptive *a, double y, double gap, struct adaptive_ro
 	filter_update(a->filter, y, noise);
 	put_state(a, row);
 	push_past(a, y, gap);
-	few = a->filled <= GREY_ORDER_MIN; /* of too few points the noise is not known */
+	few = a->rows < GREY_ORDER_MIN; /* of too few points the noise is not known */
 	lost = fabs(y - row->state) > OUTLYING * noise;
 	a->restarts += (unsigned long)(lost && !few);
 	if (lost || few) {
