@@ -195,14 +195,22 @@ done >changes
 is "a hysteresis of 1 keeps the first order" "$(sed -n 3p changes)" 0
 rising "a hysteresis of 0.3 at least halves the changes of order" 1 "$(sed -n 2p changes)" $(($(sed -n 1p changes) / 2))
 
-# A peak at 8 and a step at 12: life ends with the K-th value in a row beyond the threshold,
-# and is predicted for the rows before.
+# A peak at 8 and a step at 12: life is over from the K-th value in a row beyond the threshold
+# on, and is predicted for the other rows.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 20; t++) print t "\t" (t == 8 || t >= 12 ? 3 : 1) }' >step.tsv
 for k in 1 2 3 4; do
 	aopf -y 2 --direction up --persist $k --stats step.stats step.tsv >/dev/null
 	column lives step.stats
 done >lives
-is "lives are predicted until 1, 2, 3, 4 values persist beyond the threshold" "$(tr '\n' ' ' <lives)" "8 13 14 15 "
+is "lives are predicted unless 1, 2, 3, 4 values persist beyond the threshold" "$(tr '\n' ' ' <lives)" "11 13 14 15 "
+# The end is 60 rows away, whatever a burst of five rows said of it.
+awk 'BEGIN { srand(8); print "t\ty"
+	for (t = 0; t < 90; t++) print t "\t" t / 150 + 0.01 * (rand() - 0.5) + (t > 40 && t < 46 ? 0.9 : 0) }' |
+	aopf -y 1 --lives-only >out
+is "a burst of bad values beyond the threshold is a failure while it lasts" \
+	"$(awk -F '\t' '$5 == 0 { printf "%s ", $1 }' out)" "43 44 45 "
+# at .6 of the life of straight wear a median is 4 % of it off, see the page
+near "and is none afterwards" "$(column rul_q50 out | tail -1)" 60 15
 
 # Ten times the 20 steps so far: an end 199 ahead is predicted, one at 201 is not.
 # One family alone has no changes of regime.
@@ -301,14 +309,16 @@ fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
 fails "a column of units that is missing" 1 "no column 'unit'" aopf --unit unit exp.tsv
 
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
-ok 'values that overflow are accepted' aopf -y 5 --lives-only enormous.tsv
+fails 'values that overflow are accepted, but alternate' 3 'every other value' aopf -y 5 --lives-only enormous.tsv
+aopf -y 5 --lives-only enormous.tsv >out 2>err
 awk '$1 == 28' out >last
 awk 'NR == 1 || $2 < 0' enormous.tsv | aopf -y 5 --lives-only | awk '$1 == 28' >want
 ok 'values that overflow are outliers: the others alone give the same life' cmp last want
 # A sensor at its ceiling says nothing: the wear goes on.
 awk 'BEGIN { srand(7); print "t\ty"
 	for (t = 0; t < 80; t++) { y = t / 100 + 0.01 * (rand() - 0.5); print t "\t" (y > 0.6 ? 0.6 : y) } }' >ceiling.tsv
-aopf -y 1 --lives-only ceiling.tsv >out
+fails "a sensor at its ceiling" 3 "the last values are equal: the sensor sticks" aopf -y 1 --lives-only ceiling.tsv
+aopf -y 1 --lives-only ceiling.tsv >out 2>err
 near "the life goes on below the ceiling of a sensor" "$(column rul_q50 out | tail -1)" 20 8
 awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv | aopf -y 1 --lives-only >out
 ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 { exit !($4 > 60) }' out
@@ -321,6 +331,21 @@ ok "while rows are held back the end may be near" awk '!/^#/ && $1 == 82 { exit 
 # Rounded readings repeat too, and count.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 80; t++) print t "\t" int(t / 16) / 6 }' | aopf -y 1 --lives-only >out
 ok "coarse readings of an end at 96 hold it" awk '!/^#/ && $1 == 79 { exit !(3 < $3 && $3 < 17 && 17 < $5) }' out
+
+# mixed MANY: the readings of MANY machines in turn, as one series
+mixed() {
+	awk -v many="$1" 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
+		print t "\t" t / 200 * (1 + t % many) + 0.02 * (rand() - 0.5) }'
+}
+mixed 2 >mixed.tsv
+fails "two machines in one series" 3 "every other value before .* on a course of its own: values of two machines" \
+	aopf -y 1 --lives-only mixed.tsv
+ok "one machine" sh -c "aopf -y 1 --lives-only 2>err >out <<-END && ! grep . err
+$(mixed 1)
+END"
+printf 'unit\tt\ty\na\t0\t1\na\t1\t1\nb\t2\t1\n' >units.tsv
+fails "two units that no option tells apart" 1 "units.tsv: line 4: unit 'b' after 'a': want rows of one unit" aopf units.tsv
+ok "a single one needs no option" sh -c 'head -3 units.tsv | aopf'
 
 # rescale FACTOR: a series whose unit changes at row 60
 rescale() {

@@ -127,6 +127,18 @@ near "--wear-rate last has the same mean life" "$(cell out 1 mean)" "$(cell spre
 
 # One realisation, and wear that was never seen.
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
+# The same particles, by their own diameters and by those of ferrous ones with their pulse.
+printf 'time1\tdiameter\tclass\n1\t1e-4\tnon-ferrous\n2\t1e-4\tferrous\n3\t1e-4\tnon-ferrous\n' >bronze.tsv
+printf 'time1\tdiameter\tclass\n0.5\t1e-4\tnon-ferrous\n1.5\t0\tferrous\n' |
+	wear-volume --non-ferrous bronze --excitation 200kHz >one.tsv
+awk -v v="$(column y one.tsv)" 'BEGIN { d = sprintf("%.17g", exp(log(v * 6 / 3.14159265358979324) / 3))
+	print "time1\tdiameter\n1\t" d "\n2\t1e-4\n3\t" d }' >own.tsv
+rwl --threshold-volume 1e-9m3 --wear-rate last own.tsv >own.life 2>own.err
+rwl --threshold-volume 1e-9m3 --wear-rate last --non-ferrous bronze --excitation 200kHz bronze.tsv >bronze.life 2>bronze.err
+is "particles of a named material wear like those of their own diameter" "$? $(column mean bronze.life |
+	awk '{ printf "%.9g ", $1 }')$(wc -l <bronze.err)" "0 $(column mean own.life | awk '{ printf "%.9g ", $1 }')$(wc -l <own.err)"
+rwl --threshold-volume 1e-9m3 --wear-rate last bronze.tsv >bronze.life 2>bronze.err
+is "without the material the life is doubtful" "$? $(grep -c '2 rows are non-ferrous' bronze.err) $(grep -c '^# doubtful: the diameters' bronze.life)" "3 1 1"
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
@@ -374,4 +386,6 @@ done
 	done
 } >started.tsv
 is "the start of a series is carried to the lives" "$(rwl started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
+printf 'unit\tt\tleakage\na\t0\t3e-5\nb\t1\t3e-5\n' >units.tsv
+fails "the state of two units" 1 "units.tsv: line 3: unit 'b' after 'a': want rows of one unit" rwl units.tsv
 done_testing

@@ -28,6 +28,17 @@ is 'times and diameters are converted from the units of the table' "$(spheres vo
 
 printf 'time1\tdiameter\tclass\n0.5\t1e-3\tferrous\n1.5\t1e-4\tnon-ferrous\n' | wear-volume >volume.tsv 2>err
 is 'the volume of non-ferrous particles is marked' "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
+# Below the skin depth d^5 = 60 d_ferrous^3 / (pi f mu0 sigma), bronze of 8e6 S/m.
+printf 'time1\tdiameter\tclass\n0.5\t2e-5\tnon-ferrous\n1.5\t1e-6\tferrous\n' >bronze.tsv
+wear-volume --non-ferrous bronze --excitation 200kHz bronze.tsv >volume.tsv 2>err
+near 'of a named material it is that of their own diameter' "$(column y volume.tsv | awk '{ pi = 3.14159265358979
+	printf "%.6f", $1 / (pi / 6 * (60 * 2e-5 ^ 3 / (pi * 2e5 * 4e-7 * pi * 8e6)) ^ 0.6) }')" 1 1e-3
+is 'and not marked' "$(wc -l <err | tr -d ' ')" 0
+printf '2.5\t1e-5\tunclear\n' | cat bronze.tsv - >unclear.tsv
+wear-volume --non-ferrous bronze --excitation 200kHz unclear.tsv >volume.tsv 2>err
+is 'particles of unclear class are marked' "$? $(grep -c '1 rows are of unclear class' err)" "3 1"
+ok 'unless all are ferrous' wear-volume --non-ferrous ferrous unclear.tsv
+fails 'a material where no class is known' 1 "no column 'class'" wear-volume --non-ferrous bronze um.tsv
 
 printf 'time1\tdiameter\tamplitude\tverdict\n0.5\t1e-3\t1\talone\n1.5\t1e-4\t-0.1\talone\n' >signs.tsv
 wear-volume signs.tsv >volume.tsv 2>err

@@ -75,6 +75,8 @@ int series_next(struct series *s)
 
 	if (!table_next(s->table))
 		return 0;
+	if (s->u < 0)
+		table_one_unit(s->table);
 	s->unit = find_unit(s, s->u < 0 ? "" : table_text(s->table, s->u));
 	u = &s->seen[s->unit];
 	s->time = s->t < 0 ? (double)u->rows : table_number(s->table, s->t);

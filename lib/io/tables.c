@@ -48,6 +48,7 @@ struct table_in {
 	int unmarked;      /* a header or row came where no end was announced */
 	long rows;         /* since the announcement */
 	uint32_t checksum; /* of the lines since then */
+	char *unit;        /* of the rows, see table_one_unit() */
 };
 
 struct table_out {
@@ -504,6 +505,19 @@ const char *table_text(const struct table_in *t, int column)
 	return t->cell[column];
 }
 
+void table_one_unit(struct table_in *t)
+{
+	int column = table_find(t, "unit");
+
+	if (column < 0)
+		return;
+	if (!t->unit)
+		t->unit = xstrdup(t->cell[column]);
+	if (strcmp(t->unit, t->cell[column]) != 0)
+		die(EXIT_RUN, "%s: line %ld: unit '%s' after '%s': want rows of one unit",
+			t->name, t->number, t->cell[column], t->unit);
+}
+
 void table_close(struct table_in *t)
 {
 	input_close(t->in);
@@ -514,6 +528,7 @@ void table_close(struct table_in *t)
 	free(t->cell);
 	keys_free(&t->keys);
 	upstream_free(&t->upstream);
+	free(t->unit);
 	free(t->line);
 	free(t);
 }

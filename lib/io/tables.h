@@ -56,6 +56,9 @@ double table_positive(const struct table_in *t, int column);
 long table_whole(const struct table_in *t, int column, double least, double most);
 /* Cell as text, valid until the next row. */
 const char *table_text(const struct table_in *t, int column);
+/* Dies if the present row has another value than the first in the column unit, if there
+ * is one. */
+void table_one_unit(struct table_in *t);
 void table_close(struct table_in *t);
 
 /* columns: names separated by blanks, "t y state"; units: one for each column, "1" for

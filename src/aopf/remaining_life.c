@@ -131,10 +131,11 @@ struct outlook {
 		double early;                   /* the last of those without an effect */
 		long rows;
 		long beyond;  /* successive values past the threshold */
-		long healthy; /* values short of it before the failure */
+		long healthy; /* values short of it */
 		int failed, alarm;
 		int never;             /* the last life is infinite with certainty */
 		double origin, newest; /* the first value and the last */
+		long alternating;      /* values of two courses */
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
@@ -524,13 +525,14 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
 				      ? now->beyond + 1
 				      : 0;
-	now->failed |= now->started && now->beyond >= persist;
-	now->healthy += !isnan(in->y) && now->beyond == 0 && !now->failed;
+	now->failed = now->started && now->beyond >= persist;
+	now->healthy += !isnan(in->y) && now->beyond == 0;
 	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
 		now->range = rescaled_range(
 			&now->scale, RESCALED_HALF, outlook_options.threshold);
 		now->rescaled = in->t;
+		now->alternating += rescaled_alternates(&now->scale);
 	}
 	believed = !is_rescaled(o) &&
 		   !rescaled_doubtful(&now->scale, outlook_options.threshold);
@@ -575,11 +577,22 @@ int outlook_settle(const struct outlook *o, const char *unit)
 	unsigned long due = 0;
 	int doubtful = !is_rescaled(o) &&
 		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
-	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful;
+	    stuck = o->predict && predict_bank(o->predict) &&
+		    bank_stuck(predict_bank(o->predict)),
+	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful || stuck ||
+		    o->now.alternating > 0;
 
 	if (doubtful)
 		warn("%s%sno life is predicted after the last rows: their unit or the gain "
 		     "may have changed, or a counter has wrapped",
+			unit, *unit ? ": " : "");
+	if (o->now.alternating > 0)
+		warn("%s%severy other value before %ld of them lies on a course of its own: "
+		     "values of two machines are told apart by --unit",
+			unit, *unit ? ": " : "", o->now.alternating);
+	if (stuck)
+		warn("%s%sthe last values are equal: the sensor sticks or is at the end of its "
+		     "range, and the lives continue the wear before",
 			unit, *unit ? ": " : "");
 	if (o->now.range > 0)
 		warn("%s%sthe last %d values at time %g go on from 0 where those before "

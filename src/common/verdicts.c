@@ -1,10 +1,11 @@
 #include "verdicts.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/non_ferrous.h"
 #include <string.h>
 
 static int doubtful_too;
-static double doubtful, unresolved, foreign, non_ferrous;
+static double doubtful, unresolved, foreign, non_ferrous, unclear;
 static double signs[2]; /* rows of positive and of negative amplitude */
 static int class_column = -1, amplitude_column = -1;
 
@@ -28,18 +29,24 @@ int verdict_column(struct table_in *t)
 {
 	int column = table_find(t, "verdict");
 
-	class_column = table_find(t, "class");
+	class_column =
+		non_ferrous_known() ? table_need(t, "class") : table_find(t, "class");
 	amplitude_column =
 		column >= 0 && class_column < 0 ? table_find(t, "amplitude") : -1;
 	return column;
+}
+
+static int is_of_class(const struct table_in *t, const char *class)
+{
+	return class_column >= 0 && strcmp(table_text(t, class_column), class) == 0;
 }
 
 enum verdict verdict_of(const struct table_in *t, int column)
 {
 	const char *word = column < 0 ? "alone" : table_text(t, column);
 
-	non_ferrous += class_column >= 0 &&
-		       strcmp(table_text(t, class_column), "non-ferrous") == 0;
+	non_ferrous += is_of_class(t, "non-ferrous");
+	unclear += is_of_class(t, "unclear");
 	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0) {
 		if (amplitude_column >= 0)
 			signs[table_number(t, amplitude_column) < 0]++;
@@ -79,15 +86,29 @@ void verdict_report(void)
 			unresolved);
 }
 
+double verdict_diameter(const struct table_in *t, double diameter)
+{
+	return diameter > 0 && non_ferrous_known() && is_of_class(t, "non-ferrous")
+		       ? non_ferrous_size(diameter)
+		       : diameter;
+}
+
 int verdict_equivalent(void)
 {
-	if (non_ferrous > 0)
+	int unknown = non_ferrous > 0 && !non_ferrous_known(),
+	    vague = unclear > 0 && !non_ferrous_none();
+
+	if (unknown)
 		warn("%.0f rows are non-ferrous: their diameter is that of a ferrous particle "
 		     "with the same pulse, and smaller than theirs",
 			non_ferrous);
+	if (vague)
+		warn("%.0f rows are of unclear class: their diameter is that of ferrous "
+		     "particles, and too small if they are not",
+			unclear);
 	if (signs[0] > 0 && signs[1] > 0)
 		warn("amplitudes of %.0f rows are positive, of %.0f negative: those of one "
 		     "sign are non-ferrous, and larger than their diameter",
 			signs[0], signs[1]);
-	return non_ferrous > 0 || (signs[0] > 0 && signs[1] > 0);
+	return unknown || vague || (signs[0] > 0 && signs[1] > 0);
 }

@@ -24,8 +24,12 @@ enum verdict verdict_of(const struct table_in *t, int column);
 int verdict_doubtful_too(void);
 /* Says how many rows were left out, and puts them into the counters. */
 void verdict_report(void);
-/* Warns of rows of class non-ferrous, or of either sign, whose diameter is not that of
- * the particle; 1 if there are any. */
+/* Diameter of the particle of the present row, of which this is in the table: that of a
+ * sphere of the material of --non-ferrous, if it is of that class. */
+double verdict_diameter(const struct table_in *t, double diameter);
+/* Warns of rows whose diameter is not that of the particle, or may not be: of class
+ * non-ferrous if their material is not named, of class unclear, of either sign.  1 if
+ * there are any. */
 int verdict_equivalent(void);
 
 #endif

@@ -3,14 +3,13 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
-#include "common/materials.h"
+#include "common/non_ferrous.h"
 #include "common/periods.h"
 #include "common/verdicts.h"
 #include "groups.h"
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "reports.h"
-#include "signal/pulse/classify.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,9 +23,7 @@ static struct opt_list edges;
 static double period = NAN, duration = NAN, density = NAN, d50 = NAN, threshold = NAN;
 static double detection_exponent = 3, confidence = 0.95;
 static int output, standard;
-static const char *by, *non_ferrous;
-static double excitation = 100e3;
-static const struct material *material; /* of --non-ferrous */
+static const char *by;
 
 static struct opt_list alarm_level;
 static int alarm_mass;
@@ -45,11 +42,7 @@ static const struct opt opts[] = {
 	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
 		"count separately for each value of this column: material, ...", NULL,
 		0 },
-	{ 0, "non-ferrous", OPT_TEXT, UNIT_NONE, &non_ferrous, 0, 0, "NAME",
-		"with --by class: material of the particles of class non-ferrous", NULL,
-		0 },
-	{ 0, "excitation", OPT_NUM, UNIT_FREQUENCY, &excitation, 0, 1e12, "F",
-		"of --non-ferrous: frequency of the exciting field", NULL, 0 },
+	OPT_TABLE(non_ferrous_rows),
 	OPT_TABLE(oil_rows),
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"density of the particles, for masses", NULL, 0 },
@@ -78,16 +71,6 @@ static const struct prog prog = { "debriscount",
 	"[file]", "table: diameter [time1] [verdict] [sources]",
 	"table: one row per period and class", opts };
 
-static double equivalent(double size)
-{
-	return classify_equivalent(material, size, excitation);
-}
-
-static double size(double equivalent)
-{
-	return classify_diameter(material, equivalent, excitation);
-}
-
 static void check_options(void)
 {
 	if (standard && edges.n)
@@ -106,10 +89,8 @@ static void check_options(void)
 			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
 		die(EXIT_USAGE, "--alarm-mass requires --alarm and --density");
-	if (non_ferrous && (!by || strcmp(by, "class") != 0))
+	if (non_ferrous_known() && (!by || strcmp(by, "class") != 0))
 		die(EXIT_USAGE, "--non-ferrous requires --by class");
-	if (non_ferrous)
-		material = material_named("--non-ferrous", non_ferrous);
 	report_check((enum report_kind)output, !isnan(period));
 }
 
@@ -123,8 +104,8 @@ static struct report_par parameters(void)
 		.clear = alarm_level.n ? alarm_level.v[alarm_level.n - 1] : INFINITY,
 		.alarm_mass = alarm_mass,
 		.by = by,
-		.equivalent = material ? equivalent : NULL,
-		.size = material ? size : NULL };
+		.equivalent = non_ferrous_known() ? non_ferrous_equivalent : NULL,
+		.size = non_ferrous_known() ? non_ferrous_size : NULL };
 	const double *from = edges.v;
 	int n = edges.n;
 
@@ -264,7 +245,7 @@ int main(int argc, char **argv)
 			duration, PERIODS_MOST);
 	groups_finish(groups, time_column(t) >= 0 ? last : NAN);
 	verdict_report();
-	if (!material &&
+	if (!non_ferrous_known() &&
 		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&
 		verdict_equivalent())
 		groups_doubtful(groups);

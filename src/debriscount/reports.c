@@ -125,6 +125,9 @@ static void put_classes(struct report *r, const struct classes *c, const char *g
 	}
 }
 
+/* Below so many counted particles ISO 4406 has the sign ">=" before the scale number. */
+static const double FEW = 20;
+
 /* The codes at the value or an end of the interval: sizes that are seen in less than 90 %
  * of cases have none. */
 static void put_codes(struct report *r, const struct classes *c,
@@ -144,7 +147,10 @@ static void put_codes(struct report *r, const struct classes *c,
 		if (classes_detection(c, sizes[k]) < SEEN)
 			snprintf(one, sizeof one, "-");
 		else if (iso && iso4406_code(number) < ISO4406_CODES)
-			snprintf(one, sizeof one, "%d", iso4406_code(number));
+			snprintf(one, sizeof one, "%s%d",
+				end == 0 && here->sure + here->unresolved < FEW ? ">="
+										: "",
+				iso4406_code(number));
 		else if (iso)
 			snprintf(one, sizeof one, ">%d", ISO4406_CODES - 1);
 		else

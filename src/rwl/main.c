@@ -320,6 +320,16 @@ static int check_rate(const struct forecast *f, struct lifetable *out)
 	return EXIT_NOCONV;
 }
 
+/* Says so if particles are not of their diameter; its status. */
+static int check_sizes(struct lifetable *out)
+{
+	if (!state_equivalent())
+		return 0;
+	table_comment(lifetable_out(out), "doubtful",
+		"the diameters of particles that are not ferrous");
+	return EXIT_NOCONV;
+}
+
 int main(int argc, char **argv)
 {
 	char *made_by[OPT_TEXTS_MAX] = { NULL }, *cmd, *assumed;
@@ -362,7 +372,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_rate(f, out);
+	status |= check_rate(f, out) | check_sizes(out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

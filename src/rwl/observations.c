@@ -1,6 +1,7 @@
 #include "observations.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/non_ferrous.h"
 #include "common/time_unit.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
@@ -20,6 +21,7 @@ static const double most[] = { INFINITY, 0.1, 1e-2, 1e-2, 0.1 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
+static int equivalent;
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
@@ -28,7 +30,8 @@ struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options
 		"unit of the state if not SI, such as L/min", 0, 0 },
 	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
-	OPT_TABLE(timeunit_rows), OPT_TABLE(verdict_rows), OPT_END };
+	OPT_TABLE(timeunit_rows), OPT_TABLE(verdict_rows), OPT_TABLE(non_ferrous_rows),
+	OPT_END };
 
 /* Units of time and value: the table's own, or those of the options, or SI. */
 static void settle_units(struct observations *s)
@@ -144,11 +147,12 @@ int state_next(struct observations *s)
 				table_name(t), s->passed);
 		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
-			verdict_equivalent();
+			equivalent = verdict_equivalent();
 		}
 		check_lowest(s);
 		return 0;
 	}
+	table_one_unit(t);
 	time = table_number(t, s->time_column) * s->time_scale;
 	value = table_number(t, s->value_column) * s->scale;
 	if (!isfinite(time))
@@ -184,7 +188,7 @@ int state_next(struct observations *s)
 		s->passed += isnan(value);
 		stats_add("particles_without_diameter", isnan(value));
 		if (!isnan(value))
-			value = add_debris(s, verdict, value);
+			value = add_debris(s, verdict, verdict_diameter(t, value));
 	}
 	s->value = value;
 	s->gap = pair_gap(s->pair, s->quantity, value);
@@ -192,6 +196,11 @@ int state_next(struct observations *s)
 			       pair_gap(s->pair, s->quantity, value - error)) /
 		       2;
 	return 1;
+}
+
+int state_equivalent(void)
+{
+	return equivalent;
 }
 
 double state_slope(const char *file, const struct pair *pair, double skip)

@@ -54,6 +54,9 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
  * particle that duet calls unresolved counts as its sources. */
 int state_next(struct observations *s);
 
+/* 1 if some of the particles read so far are not of their diameter. */
+int state_equivalent(void);
+
 /* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */
 double state_slope(const char *file, const struct pair *pair, double skip);
 

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/non_ferrous.h"
 #include "common/periods.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
@@ -18,12 +19,13 @@ static const struct opt opts[] = {
 	{ 0, "time-scale", OPT_NUM, UNIT_NONE, &time_scale, 1e-12, 1e12, "K",
 		"time of running that the same time of the record stands for", NULL, 0 },
 	OPT_TABLE(verdict_rows),
+	OPT_TABLE(non_ferrous_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "wear-volume", "Sum the volume of particles over time.",
-	"[file]", "table: diameter, time1 [verdict] [sources]", "table: t, y (volume)",
-	opts };
+	"[file]", "table: diameter, time1 [verdict] [sources] [class]",
+	"table: t, y (volume)", opts };
 
 struct columns {
 	int time, diameter, verdict, sources;
@@ -75,6 +77,7 @@ static double volume_of(
 	if (v == VERDICT_UNRESOLVED && c->sources >= 0)
 		many = (double)table_whole(t, c->sources, 0, 1e15);
 	stats_add("particles", many);
+	d = verdict_diameter(t, d);
 	return many * sphere * d * d * d;
 }
 

@@ -1,5 +1,6 @@
 /* layout - the Cramer-Rao bound of coils, against matrices by finite differences */
 #include "layout/search.h"
+#include "num/philox.h"
 #include "tap.h"
 #include <stdlib.h>
 
@@ -241,6 +242,158 @@ static void check_search(void)
 		"where pairing must be certain the coils stand in one place");
 }
 
+/* Matching of drawn particles. */
+
+enum { MATCHED_COILS = 3 };
+
+/* What is measured of a particle: arrivals, and its slowness by the widths of pulses. */
+struct passing {
+	double arrival[MATCHED_COILS], slowness[MATCHED_COILS];
+};
+
+/* A layout, the standard errors at a coil, and the widths of windows. */
+struct matching {
+	const struct layout_par *par;
+	const double *coil;
+	int coils;
+	double se_time, se_slowness, mean, spread;
+};
+
+static double uniform(void)
+{
+	static uint64_t drawn;
+
+	return philox_uniform(3, 0, RNG_PARTICLE, drawn++);
+}
+
+static double normal(void)
+{
+	static uint64_t drawn;
+	double two[2];
+
+	philox_normal2(3, 0, RNG_NOISE, drawn++, two);
+	return two[0];
+}
+
+/* Of a particle at the first coil at this time, with any slowness in the spread. */
+static struct passing pass(const struct matching *m, double time)
+{
+	double slowness = m->mean * (1 + m->spread * (2 * uniform() - 1));
+	struct passing p;
+
+	for (int k = 0; k < m->coils; k++) {
+		p.arrival[k] = time + slowness * m->coil[k] + m->se_time * normal();
+		p.slowness[k] = slowness + m->se_slowness * normal();
+	}
+	return p;
+}
+
+/* Arrival at coil k by what is measured at those before: the weighted mean of the
+ * slownesses by widths and by the line through the arrivals; its standard error, with
+ * that of the arrival itself, in *se. */
+static double predicted(
+	const struct matching *m, const struct passing *p, int k, double *se)
+{
+	double mean = 0, time = 0, weight = 0, sum = 0;
+
+	for (int i = 0; i < k; i++) {
+		mean += m->coil[i] / k;
+		time += p->arrival[i] / k;
+	}
+	for (int i = 0; i < k; i++) {
+		double x = m->coil[i] - mean, w = 1 / (m->se_slowness * m->se_slowness);
+
+		weight += w + x * x / (m->se_time * m->se_time);
+		sum += w * p->slowness[i] + x * p->arrival[i] / (m->se_time * m->se_time);
+	}
+	*se = sqrt(m->se_time * m->se_time * (1 + 1. / k) +
+		   pow(m->coil[k] - mean, 2) / weight);
+	return time + (m->coil[k] - mean) * sum / weight;
+}
+
+/* Where the pulse of a particle is searched at coil k: in all that the spread allows, or,
+ * if that is narrower, near the prediction. */
+static void window_at(const struct matching *m, const struct passing *p, int k,
+	int by_width, double *low, double *high)
+{
+	double way = (m->coil[k] - m->coil[k - 1]) * m->mean, se, at;
+
+	*low = p->arrival[k - 1] + way * (1 - m->spread) - 3 * sqrt(2) * m->se_time;
+	*high = p->arrival[k - 1] + way * (1 + m->spread) + 3 * sqrt(2) * m->se_time;
+	at = predicted(m, p, k, &se);
+	if ((k > 1 || by_width) && 6 * se < *high - *low) {
+		*low = at - 3 * se;
+		*high = at + 3 * se;
+	}
+}
+
+/* The share of so many particles that have no pulse of another in any window. */
+static double matched(const struct matching *m, int by_width, int particles)
+{
+	/* Beyond it nothing gets into a window. */
+	double reach = 3 * m->spread * m->mean * m->coil[m->coils - 1] + 20 * m->se_time;
+	int good = 0;
+
+	for (int n = 0; n < particles; n++) {
+		struct passing own = pass(m, 0);
+		double low[MATCHED_COILS], high[MATCHED_COILS], t = -reach;
+		int confused = 0;
+
+		for (int k = 1; k < m->coils; k++)
+			window_at(m, &own, k, by_width, &low[k], &high[k]);
+		while ((t -= log(uniform()) / m->par->traffic.arrivals) < reach) {
+			struct passing other = pass(m, t);
+
+			for (int k = 1; k < m->coils; k++)
+				confused |= other.arrival[k] > low[k] &&
+					    other.arrival[k] < high[k];
+		}
+		good += !confused;
+	}
+	return (double)good / particles;
+}
+
+/* The windows of several coils are taken to be independent: a particle in two of them
+ * counts twice. */
+static void check_matching(void)
+{
+	enum { PARTICLES = 40000 };
+	static const double two[] = { 0, 0.25 }, three[] = { 0, 0.1, 0.25 };
+	struct layout_par par = { { PULSE_SINE, 0.1273, 12.73, 10e3, 31.6 },
+		{ { 0.01, 1e-3, PIPE_PLUG, 7 }, 100, 0.025 } };
+	double v = pipe_mean_velocity(&par.traffic.pipe), got;
+	struct matching m = { &par, two, 2, 0, 0, 1 / v, 0 };
+	struct layout of;
+	struct bound b;
+
+	par.bound.velocity = v;
+	bound_closed(&par.bound, two, 1, &b);
+	m.se_time = b.time;
+	m.se_slowness = b.velocity / (v * v);
+	/* 40000 draws of 0.9 have a standard deviation of 0.0015, of 0.97 0.0009. */
+	m.spread = par.traffic.spread = 0.025;
+	layout_evaluate(&par, two, 2, &of);
+	got = matched(&m, 0, PARTICLES);
+	ok(fabs(got - of.unique) < 0.005,
+		"drawn particles are matched as foretold: %.4f, %.4f", got, of.unique);
+	got = matched(&m, 1, PARTICLES);
+	ok(fabs(got - of.by_width) < 0.003,
+		"and by the widths of their pulses: %.4f, %.4f", got, of.by_width);
+	m.coil = three;
+	m.coils = 3;
+	layout_evaluate(&par, three, 3, &of);
+	got = matched(&m, 1, PARTICLES);
+	ok(got > of.by_width - 0.003 && got < of.by_width + 0.01,
+		"at a third coil, too: %.4f, %.4f", got, of.by_width);
+	par.traffic.arrivals = 300;
+	m.spread = par.traffic.spread = 0;
+	layout_evaluate(&par, three, 3, &of);
+	got = matched(&m, 1, PARTICLES);
+	ok(got > of.by_width + 0.005 && got < sqrt(of.by_width) + 0.003,
+		"of equal velocities those confused are so at both: %.4f, at least %.4f",
+		got, of.by_width);
+}
+
 int main(void)
 {
 	compare_with_differences(PULSE_SINE, "sine");
@@ -249,5 +402,6 @@ int main(void)
 	compare_with_formula();
 	check_traffic();
 	check_search();
+	check_matching();
 	return tap_done();
 }

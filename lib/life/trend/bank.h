@@ -141,6 +141,10 @@ int bank_event(struct bank *b, enum bank_event event);
 /* 1 if the level has fallen at once, and stayed there: a repair. */
 int bank_repaired(const struct bank *b);
 
+/* 1 if the last eight values or more are equal because the sensor is frozen, but not all
+ * values: those of a unit without wear may be. */
+int bank_stuck(const struct bank *b);
+
 /* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:
  * the share of these. */
 double bank_weight(const struct bank *b, enum bank_family family);
