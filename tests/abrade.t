@@ -32,6 +32,9 @@ printf 'realisation\tdiameter\n1\t10e-6\n0\t20e-6\n1\t12e-6\n' >two.tsv
 abrade --load 0.1N --hardness 2GPa --friction 0 --summary s.tsv two.tsv >loaded.tsv
 is "each realisation has its own gap" "$(column realisation s.tsv | tr '\n' ' ')$(column load s.tsv |
 	awk '{ printf "%.6f ", $1 }')" "0 1 0.100000 0.100000 "
+abrade --gap 15um --hardness 2 --friction 0 two.tsv >out 2>err
+is "a hardness without its unit gives a hint" "$(grep -c 'is 2GPa meant' err)" 1
+fails "a body without its surface" 2 '\--body requires --surface' abrade --gap 15um --hardness 2GPa --friction 0 --body 2 two.tsv
 fails "more load than they can carry" 1 'carry at most .* the surfaces touch' \
 	abrade --load 1kN --hardness 2GPa --friction 0 two.tsv
 

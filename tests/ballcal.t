@@ -85,6 +85,8 @@ ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm --balls size3.tsv:3mm >cal.t
 rising "errors that tables share leave the exponent in doubt" 0.05 "$(value exponent_p)" 1
 ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:0.7mm >cal.tsv 2>err
 is "three tables of one size do not determine the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
+ballcal --balls 60.tsv:60um --balls negative.tsv:100um >out 2>err
+is "tables of either sign are marked" "$? $(grep -c 'positive in 1 tables and negative in 1' err)" "3 1"
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 ln -s 1.tsv same.tsv

@@ -213,11 +213,21 @@ printf '# units: 0mm\ndiameter\n50\n' >zero.tsv
 fails "a unit that begins with a digit" 1 "column 'diameter' is in '0mm', want m" debriscount zero.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
 fails "a record after a record of unknown length" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount'
+printf '# cmd: a\ntime1\tdiameter\n1\t1e-4\n# cmd: b\ntime1\tdiameter\n1\t1e-4\n' >records.tsv
+debriscount --duration 10s records.tsv >out 2>err
+is "records that are counted as one are reported" "$? $(grep -c '2 records are counted as one' err)" "0 1"
 fails "codes of a record of unknown length" 1 'volume of oil is unknown' debriscount --output codes --flow 1L/min bottle.tsv
 printf 'diameter\tverdict\tsources\n10\tunresolved\t4\n' >far.tsv
 fails "a section of balls of 10 metres" 1 'line 2: diameter is 10 m, want metres' debriscount far.tsv
 printf '# units: um\ndiameter\n37.9\n38\n70\n' >edge.tsv
 is "a diameter in another unit is in the class that begins with it" \
 	"$(debriscount --standard as4059 edge.tsv | column rows /dev/stdin | tr '\n' ' ')" "0 0 0 1 1 1 "
+printf 'diameter\n1e-5\n5e-5\n' >faint.tsv
+debriscount --duration 10s --d50 50um --detection-threshold 5 faint.tsv >out 2>err
+is "a particle that the sensor hardly detects is marked" "$? $(grep -c '^debriscount: 1 particles are of a size' err)" "3 1"
+debriscount --duration 10s --density 7.8 faint.tsv >out 2>err
+is "a density in g/cm3 without its unit gives a hint" "$(grep -c 'is 7.8g/cm3 meant' err)" 1
+fails "an excitation of no material" 2 '\--excitation requires --non-ferrous' \
+	debriscount --duration 10s --excitation 1MHz faint.tsv
 fails "a flow in litres without its unit" 2 'flow 60: want' debriscount --flow 60 /dev/null
 done_testing

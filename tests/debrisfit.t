@@ -16,6 +16,7 @@ debrisgen --yield 355MPa --friction 0.3 --summary full.steps hidden.nrrd >full.t
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats \
 	--summary quick.steps hidden.nrrd >quick.tsv 2>said
 is 'other surfaces are estimated' "$?" 0
+fails 'an audit without a surrogate' 2 '\--audit requires --surrogate' debrisgen --yield 355MPa --audit 0.5 fitted.nrrd
 near 'the surrogate answers for most of the surfaces' "$(column surfaces_estimated stats)" 30 12
 is 'as many particles are found on each as by the full model' "$(column particles quick.steps | cksum)" \
 	"$(column particles full.steps | cksum)"

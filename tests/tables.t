@@ -23,6 +23,13 @@ is 'rows equal to the first are kept if there is no header' "$(column y out | tr
 is 'rows equal to the first keep their times' "$(column t out | tr '\n' ' ')" '0 1 2 3 4 '
 printf '\357\273\277y\tt\n1\t0\n2\t1\n4\t2\n' >marked
 is 'a byte order mark is ignored' "$(read_series marked)" '0 1 2 1 2 4 '
+aopf plain >stream
+sed 's/$/\r/' stream >stream.dos
+{ printf '\357\273\277'; cat stream; } >stream.marked
+ok 'a stream with DOS endings is whole' records --check stream.dos
+ok 'so is one with a byte order mark' records --check stream.marked
+sed 's/^\(.\)\(.*\)4/\1\25/' stream.dos >stream.bad
+fails 'a changed cell of a stream with DOS endings' 1 'damaged or edited' records --check stream.bad
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
 is 'three spellings of a missing value are read' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
 

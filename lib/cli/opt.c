@@ -645,6 +645,19 @@ int opt_given_bare(const char *word)
 	return 0;
 }
 
+void opt_require(const char *other, const char *words)
+{
+	if (opt_given(other))
+		return;
+	for (const char *w = words; *w; w += strcspn(w, " "), w += *w == ' ') {
+		char *word = xprintf("%.*s", (int)strcspn(w, " "), w);
+
+		if (opt_given(word))
+			die(EXIT_USAGE, "--%s requires --%s", word, other);
+		free(word);
+	}
+}
+
 const char *opt_any_given(const struct opt *table)
 {
 	const char *word = NULL;

@@ -180,16 +180,17 @@ static int next_line(struct table_in *t)
 	size_t n;
 
 	while ((n = read_line(t)) > 0) {
+		/* A stream is whole with a mark, or with converted line ends, too. */
+		if (t->number == 1 && strncmp(t->line, byte_order_mark, 3) == 0)
+			memmove(t->line, t->line + 3, (n -= 3) + 1);
+		if (n > 1 && t->line[n - 2] == '\r')
+			memcpy(t->line + --n - 1, "\n", 2);
 		if (!mind_end(t, n))
 			continue;
 		t->line[--n] = '\0';
-		if (n && t->line[n - 1] == '\r')
-			t->line[--n] = '\0';
 		if (n != strlen(t->line))
 			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name,
 				t->number);
-		if (t->number == 1 && strncmp(t->line, byte_order_mark, 3) == 0)
-			memmove(t->line, t->line + 3, (n -= 3) + 1);
 		if (*t->line == '#')
 			keep_key(t, t->line + 1);
 		else if (n) {

@@ -94,8 +94,16 @@ static void check_options(int operands)
 		warn("--gap %g m: is %gum meant?", gap, gap);
 	if (!hardness.n)
 		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
+	for (int i = 0; i < hardness.n; i++)
+		if (hardness.v[i] < 1e5)
+			warn("--hardness %g Pa is softer than any solid: is %gGPa meant?",
+				hardness.v[i], hardness.v[i]);
+	if (abrasive < 1e5)
+		warn("--abrasive-hardness %g Pa is softer than any solid: is %gGPa meant?",
+			abrasive, abrasive);
 	if (isnan(friction))
 		die(EXIT_USAGE, "--friction is missing");
+	opt_require("surface", "body");
 	if (particles_path && !surface_path)
 		die(EXIT_USAGE, "--particles: the table goes to standard output unless "
 				"--surface is given");

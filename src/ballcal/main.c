@@ -57,6 +57,7 @@ struct pulses {
 	struct pulse *pulse;
 	size_t n, room;
 	double speed;   /* sum of velocities */
+	int signs[2];   /* tables of positive and of negative amplitudes */
 	double squares; /* sum of the squared standard errors of the amplitudes */
 };
 
@@ -131,6 +132,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 	}
 	if (p->n == before)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
+	p->signs[sign < 0]++;
 	table_close(t);
 	free(path);
 }
@@ -226,8 +228,7 @@ int main(int argc, char **argv)
 	if (!balls.n)
 		die(EXIT_USAGE, "--balls is missing: FILE:D, a table of pulses and the "
 				"diameter of its balls");
-	if (!isnan(noise) && isnan(duration))
-		die(EXIT_USAGE, "--noise requires --pulse-duration");
+	opt_require("pulse-duration", "noise false-alarms velocity");
 	if (!isnan(duration) && isnan(detection_threshold(duration, alarms)))
 		die(EXIT_USAGE,
 			"--false-alarms %g Hz: too many for any threshold with pulses of %g s",
@@ -261,7 +262,12 @@ int main(int argc, char **argv)
 	}
 	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
-	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY;
+	doubtful =
+		doubt.slope_p < UNLIKELY || lack < UNLIKELY || (p.signs[0] && p.signs[1]);
+	if (p.signs[0] && p.signs[1])
+		warn("amplitudes are positive in %d tables and negative in %d: balls of several "
+		     "materials have no constant in common",
+			p.signs[0], p.signs[1]);
 	if (doubt.slope_p < UNLIKELY)
 		warn("the exponent is %.3g, not %g: p = %.2g%s", l.slope, exponent,
 			doubt.slope_p,

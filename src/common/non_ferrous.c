@@ -20,6 +20,7 @@ static const struct material *material(void)
 
 int non_ferrous_known(void)
 {
+	opt_require("non-ferrous", "excitation");
 	return name && material();
 }
 

@@ -87,6 +87,10 @@ static void check_options(void)
 	if (alarm_level.n == 2 && alarm_level.v[1] > alarm_level.v[0])
 		die(EXIT_USAGE,
 			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
+	opt_require("d50", "detection-exponent");
+	if (density > 1 && density < 100 && opt_given_bare("density"))
+		warn("--density %g kg/m3 is lighter than any particle: is %gg/cm3 meant?",
+			density, density);
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
 		die(EXIT_USAGE, "--alarm-mass requires --alarm and --density");
 	if (non_ferrous_known() && (!by || strcmp(by, "class") != 0))
@@ -152,14 +156,19 @@ static double or_nan(const struct table_in *t, int column,
 	return isnan(table_number(t, column)) ? NAN : valid(t, column);
 }
 
+/* Probability of detection below which a particle stands for more than a hundred. */
+static const double HARDLY = 0.01;
+
 /* Reads all rows; returns the end of the record. */
-static double count_rows(struct table_in *t, struct groups *groups)
+static double count_rows(
+	struct table_in *t, const struct detection *detection, struct groups *groups)
 {
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
 	int cv = verdict_column(t), cs = table_find(t, "sources");
 	int cb = by ? table_need(t, by) : -1;
-	double last = 0, late = 0, begin = 0, end = groups_next(groups);
-	long part = table_part(t);
+	double last = 0, late = 0, begin = 0, end = groups_next(groups), hardly = 0,
+	       diameter;
+	long part = table_part(t), records = 1;
 
 	if (ct < 0 && !isnan(period))
 		die(EXIT_RUN, "%s: no column of times: --period needs time1, time or t",
@@ -177,6 +186,8 @@ static double count_rows(struct table_in *t, struct groups *groups)
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: count each record separately",
 				table_name(t), table_line(t));
+		records += table_part(t) != part;
+		part = table_part(t);
 		if (time > duration)
 			die(EXIT_RUN,
 				"%s: line %ld: a particle at %g s, after --duration "
@@ -201,13 +212,25 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				or_nan(t, cd, table_diameter));
 			continue;
 		}
-		groups_add(groups, name, table_diameter(t, cd), v == VERDICT_SURE);
+		diameter = table_diameter(t, cd);
+		hardly += detection_probability(detection, diameter) < HARDLY;
+		groups_add(groups, name, diameter, v == VERDICT_SURE);
 		stats_add("particles", 1);
 	} while (table_next(t));
 	if (late > 0) {
 		warn("%.0f particles arrived after the end of their period and are counted in a later one",
 			late);
 		stats_set("particles_late", late);
+		groups_doubtful(groups);
+	}
+	if (records > 1 && !isnan(duration))
+		warn("%ld records are counted as one: --duration %g s is taken for all together",
+			records, duration);
+	if (hardly > 0) {
+		warn("%.0f particles are of a size that the sensor detects in less than 1 %% "
+		     "of cases: each counts as more than a hundred, or is none, or --d50 is "
+		     "wrong",
+			hardly);
 		groups_doubtful(groups);
 	}
 	return last;
@@ -229,7 +252,7 @@ int main(int argc, char **argv)
 	par.cmd = opt_cmd(table_upstream(t), NULL);
 	groups = groups_new(&par);
 	if (more)
-		last = count_rows(t, groups);
+		last = count_rows(t, &par.classes.detection, groups);
 	else if (isnan(duration))
 		die(EXIT_RUN,
 			"%s: no particle: specify the length of the record with --duration",

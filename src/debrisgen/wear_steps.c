@@ -93,6 +93,8 @@ static void check_surrogate(void)
 		"full-sum", "richardson", "counterface", "law", "surface", "stress",
 		"counter-surface", NULL };
 
+	opt_require("surrogate", "interval width audit");
+	opt_require("stress", "fields stress-layers");
 	if (!quick_asked())
 		return;
 	for (int k = 0; without[k]; k++)
@@ -110,8 +112,7 @@ void wearing_check(void)
 		die(EXIT_USAGE, "--yield is missing");
 	if (!yield.n)
 		yield = (struct opt_list){ 1, { INFINITY } };
-	if (layer && isnan(depth_step))
-		die(EXIT_USAGE, "--layer requires --depth-step");
+	opt_require("depth-step", "layer");
 	if (yield.v[0] < 1e5)
 		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?",
 			yield.v[0], yield.v[0]);

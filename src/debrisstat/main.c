@@ -447,8 +447,7 @@ static void check_options(void)
 	if (other_path && (output != FITS || summary_path || realisations))
 		die(EXIT_USAGE,
 			"--compare excludes --output, --summary and --realisations");
-	if (!other_path && opt_given("depth"))
-		die(EXIT_USAGE, "--depth requires --compare");
+	opt_require("compare", "depth");
 	if (other_path && !bootstrap)
 		bootstrap = COMPARED;
 	if (other_path && !opt_given("confidence"))

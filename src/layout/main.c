@@ -104,6 +104,7 @@ static void check_options(void)
 {
 	if (!coils.n == !best)
 		die(EXIT_USAGE, "specify either --coils X,X,... or --best N");
+	opt_require("best", "extent least-unique steps");
 	if (best && isnan(extent))
 		die(EXIT_USAGE, "--best %ld requires --extent, the available length",
 			best);
@@ -116,6 +117,11 @@ static void check_options(void)
 			"--snr is missing: peak of a 100 um particle over the noise, dB");
 	if (isnan(arrivals) == isnan(per_ml))
 		die(EXIT_USAGE, "specify either --arrivals F or --per-ml N");
+	if (bore >= 1 && opt_given_bare("bore"))
+		warn("--bore %g m: numbers without a unit are metres: is %gmm meant?",
+			bore, bore);
+	if (flow >= 1 && opt_given_bare("flow"))
+		warn("--flow %g m3/s: is %gL/min meant?", flow, flow);
 }
 
 /* Reads "0,5cm,25cm"; returns the number of coils. */

@@ -79,8 +79,7 @@ static void check_options(int from_file)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude one another");
 	if (measure && spectrum)
 		die(EXIT_USAGE, "--measure and --spectrum exclude one another");
-	if (opt_given("taper") && !spectrum)
-		die(EXIT_USAGE, "--taper requires --spectrum");
+	opt_require("spectrum", "taper");
 	roughness_check();
 	generated_check();
 }

@@ -208,11 +208,8 @@ double state_slope(const char *file, const struct pair *pair, double skip)
 	struct regression line = { 0 };
 	struct observations s;
 	double slope;
-	struct bank_par straight = { .threshold = pair_limit(pair),
-		.direction = 1,
-		.families = BANK_LINEAR,
-		.steady = 1 };
-	struct bank *bank = bank_new(&straight);
+	struct bank_par par = { .threshold = pair_limit(pair), .direction = 1 };
+	struct bank *bank = bank_new(&par);
 
 	if (!bank)
 		die(EXIT_RUN, "out of memory");
@@ -221,7 +218,7 @@ double state_slope(const char *file, const struct pair *pair, double skip)
 		if (isnan(s.gap) || s.t - s.first_t < skip)
 			continue;
 		regression_add(&line, s.t, s.gap);
-		if (isfinite(straight.threshold) && s.quantity != PAIR_DEBRIS)
+		if (isfinite(par.threshold) && s.quantity != PAIR_DEBRIS)
 			bank_add(bank, s.t, s.gap);
 	}
 	if (bank_repaired(bank))

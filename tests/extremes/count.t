@@ -20,14 +20,14 @@ particles 1 100e-6 >one.tsv
 particles 100000 10e-6 >many.tsv
 scene "no particle in a year" "upper limit -ln 0.025 a year" 3.68887945 1e-8 "$(cell number_high --duration 365d none.tsv)"
 scene "no particle" "code 0 of any volume" 0 0 "$(debriscount --output codes --volume 100mL none.tsv --duration 1s |
-	grep -v '^#' | tail -n 1 | cut -f 4 | cut -d / -f 1)"
+	grep -v '^#' | tail -n 1 | cut -f 4 | cut -d / -f 1 | tr -d '>=')"
 scene "one particle" "lower limit -ln 0.975" 0.0253178079 1e-9 "$(cell number_low --duration 1h one.tsv)"
 scene "100000 particles" "interval near 2 x 1.96 sqrt(n)" 1 2e-3 "$(cell number_high --duration 2d many.tsv >h
 	cell number_low --duration 2d many.tsv >l; paste h l | awk '{ printf "%.6f", ($1 - $2) / (2 * 1.959964 * sqrt(1e5)) }')"
 is "1e6 particles in a millilitre | code 27: to 1.3e6 | 27 | none" "$(
 	debriscount --output codes --volume 0.1mL many.tsv --duration 2d | grep -v '^#' | tail -n 1 | cut -f 4 | cut -d / -f 1)" 27
-is "1e11 particles in a millilitre | beyond the table | >28/>28/0 | none" "$(
-	debriscount --output codes --volume 1e-12m3 many.tsv --duration 2d | grep -v '^#' | tail -n 1 | cut -f 4)" ">28/>28/0"
+is "1e11 particles in a millilitre | beyond the table | >28/>28/>=0 | none" "$(
+	debriscount --output codes --volume 1e-12m3 many.tsv --duration 2d | grep -v '^#' | tail -n 1 | cut -f 4)" ">28/>28/>=0"
 particles 3 1e-12 >atoms.tsv
 scene "particles of 1 pm" "their mass" 1 1e-6 "$(cell kg_per_hour --duration 1h --density 1000kg/m3 atoms.tsv |
 	awk '{ printf "%.9f", $1 / (3 * 3.14159265359 / 6 * 1e-33) }')"

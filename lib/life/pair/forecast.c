@@ -10,8 +10,7 @@ struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
 	struct observed observed;
-	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, of straight lines
-			    * at a constant rate, to tell repairs */
+	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, to tell repairs */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
@@ -32,12 +31,9 @@ static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
 	double limit = pair_limit(&par->pair);
-	int filter = par->rule == RATE_FILTER;
-	struct bank_par bank = { .direction = 1,
-		.families = filter ? BANK_ALL : BANK_LINEAR,
-		.steady = !filter,
-		.load = par->load,
-		.n_loads = par->n_loads };
+	struct bank_par bank = {
+		.direction = 1, .load = par->load, .n_loads = par->n_loads
+	};
 
 	if (par->scaled)
 		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);

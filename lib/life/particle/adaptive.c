@@ -7,17 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RECENT = 4, SETTLED = 8 };
+/* Rows whose errors tell what is usual, and the fewest of them that tell an outlier.  The
+ * errors of the predictions of 31 measured series and of 12 simulated kinds, over those
+ * of the last value, are .239 and .784 with the last 10, .235 and .783 with the last 20.
+ */
+enum { RECENT = 20, SETTLED = 8 };
 /* States that determine a grey model; fewer are continued by the last one. */
 enum { MODEL = 3 };
-enum { MONITOR = 20 };                 /* rows of the innovation monitor and of means */
-static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
-static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
-					  single outlier does not look like a drift */
 
 /* Of an observation, in recent errors of noise and model: farther than this from what was
- * expected it is an outlier, and no particle that far from it follows it. */
-static const double OUTLYING = 20;
+ * expected it is an outlier, and no particle that far from it follows it.  The errors of
+ * the states of the simulated kinds above are .396 with 20, .402 with 10 and .413 with 5,
+ * those of outliers .178, .147 and .135. */
+static const double OUTLYING = 10;
 
 /* A past row of all particles, and the gap before it. */
 struct lag {
@@ -56,9 +58,6 @@ struct adaptive {
 	int filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
 	long misses;
-	double process;             /* sigma_u */
-	double innovation, carried; /* running mean squares */
-	double z2;                  /* the same, of standardised ones */
 	int outlier; /* the last observation was classified as an outlier */
 	unsigned long restarts, outliers;
 };
@@ -265,7 +264,6 @@ static void push_past(struct adaptive *a, double y, double gap)
 
 static void start_particles(struct adaptive *a, double noise)
 {
-	a->z2 = 1;
 	filter_start(a->filter, a->past, a->filled, sqrt(3) * noise);
 }
 
@@ -278,21 +276,19 @@ static double observation_noise(const struct adaptive *a)
 	return s > least ? s : least;
 }
 
-/* The second largest of the last squared errors of the grey model of the observations, so
- * that a single outlier has no influence. */
+/* The mean of the last squared errors of the grey model of the observations. */
 static double missed_lately(const struct adaptive *a)
 {
-	double largest = 0, second = 0;
+	int n = (int)fmin((double)a->misses, RECENT);
+	double sum = 0;
 
-	for (int k = 0; k < RECENT; k++) {
-		second = fmax(second, fmin(a->missed[k], largest));
-		largest = fmax(largest, a->missed[k]);
-	}
-	return second;
+	for (int k = 0; k < n; k++)
+		sum += a->missed[k];
+	return n > 0 ? sum / n : 0;
 }
 
 /* An observation is classified as an outlier if its distance from the forecast, and from
- * the observation before it, is twenty times the recent error of noise and model.  Not
+ * the observation before it, is OUTLYING times the recent error of noise and model.  Not
  * twice in a row: then the series itself has moved. */
 static int is_outlier(struct adaptive *a, double y, double forecast, double noise)
 {
@@ -305,41 +301,16 @@ static int is_outlier(struct adaptive *a, double y, double forecast, double nois
 	return a->outlier;
 }
 
-/* Per step no less than half of sigma_v, below which the filter follows its own states
- * and not the data, and than the recent error of the model beyond the noise. */
+/* Per step no less than sigma_v, below which the filter follows its own states and not
+ * the data, and than the recent error of the model beyond the noise. */
 static double process_noise(const struct adaptive *a, double noise, double gap)
 {
 	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1,
-	       model = missed_lately(a) - noise * noise, s = a->par.process / a->scale;
+	       s = a->par.process / a->scale;
 
 	if (isnan(a->par.process))
-		s = fmax(a->process, fmax(0.5 * noise, sqrt(fmax(0, model))));
+		s = fmax(noise, sqrt(fmax(0, missed_lately(a) - noise * noise)));
 	return s * sqrt(steps);
-}
-
-/* Estimates the process noise from the excess of the mean squared innovation over what
- * noise and the spread of the particles explain. */
-static void learn_process(
-	struct adaptive *a, double e, double variance, double process, double noise)
-{
-	double expected = variance + noise * noise, excess;
-	double e2 = fmin(e * e, MONITOR_CLIP * expected);
-
-	if (!(a->innovation > 0)) {
-		a->innovation = expected;
-		a->carried = expected - process * process;
-	}
-	a->innovation += (e2 - a->innovation) / MONITOR;
-	a->carried += (expected - process * process - a->carried) / MONITOR;
-	excess = a->innovation - a->carried;
-	a->process = excess > 0 ? sqrt(excess) : 0;
-}
-
-/* 1 if the particles no longer follow the observations. */
-static int monitor(struct adaptive *a, double e, double variance)
-{
-	a->z2 += (fmin(e * e / variance, MONITOR_CLIP) - a->z2) / MONITOR;
-	return a->z2 > MONITOR_LIMIT;
 }
 
 static void put_state(const struct adaptive *a, struct adaptive_row *row)
@@ -350,25 +321,18 @@ static void put_state(const struct adaptive *a, struct adaptive_row *row)
 	row->ess = now.ess;
 }
 
-static void observe(struct adaptive *a, double y, double gap, double process,
-	struct adaptive_row *row)
+static void observe(struct adaptive *a, double y, double gap, struct adaptive_row *row)
 {
-	double noise = observation_noise(a), variance = filter_now(a->filter).variance;
-	double e = y - row->prediction;
-	int lost;
+	double noise = observation_noise(a);
+	int few, lost;
 
 	filter_update(a->filter, y, noise);
 	put_state(a, row);
 	push_past(a, y, gap);
-	if (a->filled <= GREY_ORDER_MIN) { /* of too few points the noise is not known */
-		lost = 1;
-	} else {
-		learn_process(a, e, variance, process, noise);
-		lost = monitor(a, e, noise * noise + variance) ||
-		       fabs(y - row->state) > OUTLYING * noise;
-		a->restarts += (unsigned long)lost;
-	}
-	if (lost) {
+	few = a->rows < GREY_ORDER_MIN; /* of too few points the noise is not known */
+	lost = fabs(y - row->state) > OUTLYING * noise;
+	a->restarts += (unsigned long)(lost && !few);
+	if (lost || few) {
 		start_particles(a, noise);
 		row->state = filter_now(a->filter).mean;
 	}
@@ -433,7 +397,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	noise_add(&a->noise, y, t - a->observed_time);
 	a->observed_time = t;
 	a->observed = y;
-	observe(a, y, gap, process, row);
+	observe(a, y, gap, row);
 }
 
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)

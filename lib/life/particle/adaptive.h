@@ -4,10 +4,9 @@
  * each particle carries its own past, a grey model of the chosen order is fitted to the
  * past of each and predicts its next state, and the observation weights them.  Departures
  * from the publication that keep the filter from diverging: histories are genealogies,
- * the process noise is no less than half of the observation noise and than the recent
- * errors of the grey model, and an innovation monitor restarts the particles
- * from the observations when their mean squared standardised innovation over twenty rows
- * exceeds four.  A single observation whose error is twenty times the usual one is
+ * the process noise is no less than the observation noise and than the recent errors of
+ * the grey model, and the particles are restarted from the observations when their mean
+ * is far from one.  A single observation whose error is ten times the usual one is
  * skipped.
  *
  *	struct adaptive *a = adaptive_new(&par);
@@ -26,7 +25,7 @@
 struct adaptive_par {
 	struct filter_par filter; /* depth is set from the order */
 	struct order_par order;
-	double process; /* sigma_u; NAN: from the innovations */
+	double process; /* sigma_u; NAN: from the forecast errors */
 	double noise;   /* sigma_v; NAN: from second differences */
 	uint64_t seed;
 	uint32_t realisation;
@@ -55,7 +54,7 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
  * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */
 enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life);
-/* Events so far; outliers are skipped, restarts are those by the monitor. */
+/* Events so far; outliers are skipped. */
 struct adaptive_counts {
 	unsigned long resamplings, outliers, restarts;
 	struct order_counts order;

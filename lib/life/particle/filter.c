@@ -134,28 +134,22 @@ static void weigh_equally(struct filter *f)
 	f->sum = (double)f->par.particles;
 }
 
-/* Mean and variance of the states, squares about one of the states, and the effective
- * sample size. */
+/* Mean of the states, about one of them, and the effective sample size. */
 static void find_moments(struct filter *f)
 {
 	const double *x = states_of(f, 0);
 	size_t n = f->par.particles;
-	lanes sums[3] = { { 0 } };
-	double off;
+	lanes off = { 0 }, squares = { 0 };
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes d = lanes_load(x + i, width) - x[0],
-		      w = lanes_load(f->weight + i, width), part = w * d;
+		lanes w = lanes_load(f->weight + i, width);
 
-		lanes_add(&sums[0], part, width);
-		lanes_add(&sums[1], part * d, width);
-		lanes_add(&sums[2], w * w, width);
+		lanes_add(&off, w * (lanes_load(x + i, width) - x[0]), width);
+		lanes_add(&squares, w * w, width);
 	}
-	off = (sums[0][0] + sums[0][1]) / f->sum;
-	f->now.mean = x[0] + off;
-	f->now.variance = fmax(0, (sums[1][0] + sums[1][1]) / f->sum - off * off);
-	f->now.ess = f->sum * f->sum / (sums[2][0] + sums[2][1]);
+	f->now.mean = x[0] + (off[0] + off[1]) / f->sum;
+	f->now.ess = f->sum * f->sum / (squares[0] + squares[1]);
 }
 
 void filter_start(struct filter *f, const double *past, int count, double spread)

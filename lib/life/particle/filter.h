@@ -63,10 +63,10 @@ void filter_predict(struct filter *f, const double *mean, double sigma);
  * necessary.  Returns the log of the evidence, log mean(p(y|x)). */
 double filter_update(struct filter *f, double y, double noise);
 
-/* Weighted mean and variance of the states of the present step, as predicted; after an
- * update the mean is that before resampling, as is the effective sample size. */
+/* Weighted mean of the states of the present step, as predicted; after an update it is
+ * that before resampling, as is the effective sample size. */
 struct filter_now {
-	double mean, variance, ess;
+	double mean, ess;
 	unsigned long resamplings; /* so far */
 };
 struct filter_now filter_now(const struct filter *f);
