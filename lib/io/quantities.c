@@ -40,7 +40,8 @@ const char *table_unit_word(const struct table_in *t, int column, char word[UNIT
 	for (int i = 0; rest && i < table_columns(t); i++)
 		rest = next_word(rest);
 	if (rest && *rest)
-		die(EXIT_RUN, "%s: '# units: %s' has more units than there are columns, %d",
+		die(EXIT_RUN,
+			"%s: '# units: %s' has more units than there are columns, %d",
 			table_name(t), units, table_columns(t));
 	for (int i = 0; units && i < column; i++)
 		units = next_word(units);
