@@ -213,6 +213,9 @@ printf '# units: 0mm\ndiameter\n50\n' >zero.tsv
 fails "a unit that begins with a digit" 1 "column 'diameter' is in '0mm', want m" debriscount zero.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
 fails "a record after a record of unknown length" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount'
+printf '# cmd: a\ntime1\tdiameter\n1\t1e-4\n# cmd: b\ntime1\tdiameter\n1\t1e-4\n' >records.tsv
+debriscount --duration 10s records.tsv >out 2>err
+is "records that are counted as one are reported" "$? $(grep -c '2 records are counted as one' err)" "0 1"
 fails "codes of a record of unknown length" 1 'volume of oil is unknown' debriscount --output codes --flow 1L/min bottle.tsv
 printf 'diameter\tverdict\tsources\n10\tunresolved\t4\n' >far.tsv
 fails "a section of balls of 10 metres" 1 'line 2: diameter is 10 m, want metres' debriscount far.tsv

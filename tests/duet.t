@@ -436,4 +436,18 @@ rows plain.tsv >a
 duet --align 20ms opposite.au >b.tsv 2>said
 rows b.tsv >b
 same "it is found at a given lag, too" a b
+# Each channel records a share of the other one; errors of the shares are 0.001.
+sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 35ms --snr 30dB --lag 0.2ms:0.5ms --seed 4 >pure.au
+sigconvert -o text pure.au |
+	awk -F '\t' -v OFS='\t' '/^#/ { next } /^[0-9]/ { x = $2; $2 = x - 0.02 * $3; $3 += 0.05 * x } 1' |
+	sigconvert --from text >mixed.au
+duet pure.au >plain.tsv
+duet -v --instrument mixed-rig.tsv mixed.au 2>said >mixed.tsv
+is "with crosstalk as many particles are found" "$(column time1 mixed.tsv | wc -l)" "$(column time1 plain.tsv | wc -l)"
+near "the share of channel 2 on channel 1 is found" "$(sed -n 's/.*crosstalk \([^ ]*\) and.*/\1/p' said)" -0.02 0.005
+near "and that of channel 1 on channel 2" "$(sed -n 's/.*crosstalk [^ ]* and \([^ ,]*\),.*/\1/p' said)" 0.05 0.005
+rows mixed.tsv >a
+duet --instrument mixed-rig.tsv mixed.au >again.tsv
+rows again.tsv >b
+same "a kept instrument has the crosstalk" a b
 done_testing

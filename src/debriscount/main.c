@@ -168,7 +168,7 @@ static double count_rows(
 	int cb = by ? table_need(t, by) : -1;
 	double last = 0, late = 0, begin = 0, end = groups_next(groups), hardly = 0,
 	       diameter;
-	long part = table_part(t);
+	long part = table_part(t), records = 1;
 
 	if (ct < 0 && !isnan(period))
 		die(EXIT_RUN, "%s: no column of times: --period needs time1, time or t",
@@ -186,6 +186,8 @@ static double count_rows(
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: count each record separately",
 				table_name(t), table_line(t));
+		records += table_part(t) != part;
+		part = table_part(t);
 		if (time > duration)
 			die(EXIT_RUN,
 				"%s: line %ld: a particle at %g s, after --duration "
@@ -221,6 +223,9 @@ static double count_rows(
 		stats_set("particles_late", late);
 		groups_doubtful(groups);
 	}
+	if (records > 1 && !isnan(duration))
+		warn("%ld records are counted as one: --duration %g s is taken for all together",
+			records, duration);
 	if (hardly > 0) {
 		warn("%.0f particles are of a size that the sensor detects in less than 1 %% "
 		     "of cases: each counts as more than a hundred, or is none, or --d50 is "

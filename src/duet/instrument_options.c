@@ -152,11 +152,11 @@ struct calibrate_par instrument_par(double rate, const char *passed)
 
 void instrument_note(const struct calibration *c, double rate)
 {
-	note("align %g s, pulse %s%s of %g s%s%s, gain %g, width %g, noise %g and %g V, %d lines, learned from "
+	note("align %g s, pulse %s%s of %g s%s%s, gain %g, width %g, crosstalk %g and %g, noise %g and %g V, %d lines, learned from "
 	     "%d pulses",
 		(double)c->shift / rate, pulse_names[c->pulse + 1],
 		c->reversed ? ", reversed," : "", c->duration / rate,
 		c->measured ? ", taken from the record" : "",
-		c->corrected ? ", corrected" : "", c->gain, c->width, c->noise[0],
-		c->noise[1], c->tones, c->events);
+		c->corrected ? ", corrected" : "", c->gain, c->width, c->crosstalk[0],
+		c->crosstalk[1], c->noise[0], c->noise[1], c->tones, c->events);
 }

@@ -287,6 +287,43 @@ static enum separate_status try_wide(struct look *look, struct calibration *c)
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
+/* Learns again without the crosstalk found, until there is no more. */
+static enum separate_status without_crosstalk(struct look *look, struct calibration *c)
+{
+	enum { ROUNDS = 4 };
+	const size_t n = look->n;
+	double *x = malloc(2 * n * sizeof *x), removed[2] = { 0 };
+	enum separate_status status = x ? SEPARATE_OK : SEPARATE_MEMORY;
+
+	for (int k = 0; k < ROUNDS && status == SEPARATE_OK &&
+			(c->crosstalk[0] != 0 || c->crosstalk[1] != 0);
+		k++) {
+		struct look clean = { .par = look->par,
+			.x = { x, x + n },
+			.n = n,
+			.attempts = look->attempts,
+			.work = look->work };
+		struct calibration other = { 0 };
+		double more[2] = { removed[0] + c->crosstalk[0],
+			removed[1] + c->crosstalk[1] };
+
+		memcpy(x, look->x[0], n * sizeof *x);
+		memcpy(x + n, look->x[1], n * sizeof *x);
+		calibration_unmix(more, x, x + n, n);
+		status = find(&clean, &other);
+		look->attempts = clean.attempts;
+		look->work = clean.work;
+		if (status != SEPARATE_OK)
+			break;
+		memcpy(removed, more, sizeof removed);
+		calibration_clear(c);
+		*c = other;
+	}
+	memcpy(c->crosstalk, removed, sizeof removed);
+	free(x);
+	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
+}
+
 /* Learns from channels of equal polarity; OPPOSITE if they seem to differ. */
 static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
@@ -299,6 +336,8 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
 		status = try_wide(&look, c);
+	if (status == SEPARATE_OK)
+		status = without_crosstalk(&look, c);
 	c->attempts = look.attempts;
 	c->work = look.work;
 	return status;

@@ -51,6 +51,18 @@ void calibration_clear(struct calibration *c)
 	whitening_clear(&c->whitening);
 }
 
+void calibration_unmix(const double crosstalk[2], double *x1, double *x2, size_t n)
+{
+	const double k1 = crosstalk[0], k2 = crosstalk[1], left = 1 - k1 * k2;
+
+	for (size_t i = 0; i < n && (k1 != 0 || k2 != 0); i++) {
+		double first = x1[i];
+
+		x1[i] = (first - k1 * x2[i]) / left;
+		x2[i] = (x2[i] - k2 * first) / left;
+	}
+}
+
 void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 {
 	*scene = (struct joint_scene){ .shape = c->shape,

@@ -75,7 +75,9 @@ struct calibration {
 	double drift; /* change of the logarithm of the gain, which is that at the middle
 			 of what is learned from, per sample */
 	double width; /* of the pulses of sensor 2, over those of sensor 1 */
-	double transit; /* samples between the sensors; INFINITY if unknown */
+	double crosstalk[2]; /* share of the other channel in either, with the sign of
+				sensor 2 as separated */
+	double transit;      /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max;      /* samples around shift */
 	double threshold, threshold_near; /* thresholds of joint.h */
 	double misfit;                    /* of joint.h: error of the shape */
@@ -117,6 +119,9 @@ enum separate_status {
 };
 
 void calibration_clear(struct calibration *c);
+
+/* Removes what the channels have of each other: x1 = y1 + k1 y2, x2 = y2 + k2 y1. */
+void calibration_unmix(const double crosstalk[2], double *x1, double *x2, size_t n);
 
 /* Fills the scene of joint.h; the caller sets max_pulses.  Steady tones at frequencies
  * where the pulse has no power are left out. */

@@ -5,6 +5,7 @@
 #include "signal/detect/sections.h"
 #include "signal/noise/robust.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The flags of n samples from one on, if some of them are not known; else NULL. */
@@ -165,6 +166,73 @@ double examples_chi2(struct examples *ex, int keep)
 		sum += result.chi2;
 	}
 	return sum;
+}
+
+/* Fewest examples that tell of crosstalk, and the most of it: more is a shock, which
+ * reaches both sensors at once. */
+enum { FEWEST = 6 };
+static const double MOST_CROSSTALK = 0.3;
+
+/* Least squares for each example, whose median events do not move that happen to be in
+ * the other channel at its time. */
+static double crosstalk_of(
+	struct examples *ex, int c, const double *rest, size_t n, double *model)
+{
+	double share[EXAMPLES_MAX], energy = 0, middle, error;
+	size_t count = 0;
+
+	for (int i = 0; i < ex->count; i++) {
+		const struct example *e = &ex->example[i];
+		long long at = e->begin + (c ? -ex->shift : ex->shift);
+		double own;
+
+		if (e->outlier || at < 0 || at + (long long)e->n > (long long)n)
+			continue;
+		memset(model, 0, e->n * sizeof *model);
+		for (int k = 0; k < e->m; k++)
+			joint_add(scene_of(ex, e), &e->pulse[k], 1, c ? model : NULL,
+				c ? NULL : model, e->n);
+		own = dot(model, model, e->n);
+		if (own > 0)
+			share[count++] = dot(model, rest + at, e->n) / own;
+		energy += own;
+	}
+	middle = robust_median(share, count);
+	/* The variance of a median is pi / 2 that of a mean. */
+	error = sqrt(M_PI_2 * fmax(pow(robust_spread(share, count), 2) / (double)count,
+				      1 / energy));
+	return count >= FEWEST && fabs(middle) > SIGMAS_NEVER * error &&
+			       fabs(middle) < MOST_CROSSTALK
+		       ? middle
+		       : 0;
+}
+
+void examples_crosstalk(struct examples *ex, const double *y1, const double *y2, size_t n,
+	double share[2])
+{
+	double *work = malloc((3 * n + 1) * sizeof *work);
+
+	if (!work) {
+		ex->status = SEPARATE_MEMORY;
+		return;
+	}
+	memcpy(work, y1, n * sizeof *work);
+	memcpy(work + n, y2, n * sizeof *work);
+	for (int i = 0; i < ex->count; i++) {
+		const struct example *e = &ex->example[i];
+		double most = 0;
+
+		for (int k = 0; k < e->m; k++)
+			most = fmax(most, fabs(e->pulse[k].a));
+		/* A small pulse may have been fitted to crosstalk. */
+		for (int k = 0; k < e->m; k++)
+			if (fabs(e->pulse[k].a) > MOST_CROSSTALK * most)
+				joint_add(scene_of(ex, e), &e->pulse[k], -1,
+					work + e->begin, work + n + e->begin, e->n);
+	}
+	for (int c = 0; c < 2; c++)
+		share[c] = crosstalk_of(ex, c, work + (size_t)c * n, n, work + 2 * n);
+	free(work);
 }
 
 int examples_pulses(const struct examples *ex)

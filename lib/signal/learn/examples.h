@@ -77,6 +77,12 @@ double examples_chi2(struct examples *ex, int keep);
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
+/* Share of the other channel in either of y1, y2[0 .. n), of which the examples are; 0
+ * where it is not certain.  The pulses of an example are looked for in the other channel
+ * at the same time: in that one they are a transit time earlier or later. */
+void examples_crosstalk(struct examples *ex, const double *y1, const double *y2, size_t n,
+	double share[2]);
+
 /* The gain at one example. */
 double examples_gain(const struct examples *ex, const struct example *e);
 

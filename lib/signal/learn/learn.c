@@ -605,6 +605,11 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	if (status == SEPARATE_OK && ex.count && wants_correction(par, &ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
 		status = SEPARATE_MEMORY;
+	if (status == SEPARATE_OK && ex.count && !isinf(c->transit)) {
+		examples_crosstalk(&ex, y1, y2, n, c->crosstalk);
+		c->crosstalk[0] *= c->noise[0] / c->noise[1];
+		c->crosstalk[1] *= c->noise[1] / c->noise[0];
+	}
 	if (status == SEPARATE_OK)
 		status = are_halves(&ex) ? SEPARATE_HARD : ex.status;
 	if (ex.joint)

@@ -241,34 +241,91 @@ static enum separate_status choose_hop(
 	return SEPARATE_OK;
 }
 
+/* Finds lines of y1, y2[0 .. n), at most TONES_MAX with those of c, that are none of
+ * these. */
+static enum num_status add_tones(const double *y1, const double *y2, size_t n, int side,
+	struct calibration *c, int *added)
+{
+	enum { ENOUGH = 16384 };
+	size_t some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
+	double omega[TONES_MAX];
+	int found, count = 0;
+	enum num_status status =
+		tones_find(y1, y2, n, side, TONES_MAX - c->tones, omega, &found);
+
+	for (int k = 0; k < found; k++) {
+		int known = 0;
+
+		for (int i = 0; i < c->tones; i++)
+			known |= fabs(omega[k] - c->omega[i]) < WANDER * c->omega[i];
+		if (!known)
+			omega[count++] = omega[k];
+	}
+	if (status == NUM_OK)
+		status = tones_confirm(y1 + from, y2 + from, some,
+			1 - calibration_lost(c), &count, omega);
+	memcpy(c->omega + c->tones, omega, (size_t)count * sizeof *omega);
+	c->tones += count;
+	*added = count;
+	sort_numbers(c->omega, (size_t)c->tones);
+	return status;
+}
+
+/* Bins on either side that a line has to exceed which shows only without others: what a
+ * drifting baseline leaves falls steeply from bin to bin. */
+enum { NEAR_SIDE = 12 };
+
+/* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
+ * a few times the usual sample, which includes the lines. */
+static enum separate_status search_tones(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	size_t n = rec->n;
+	double *rest = malloc(2 * n * sizeof *rest);
+	int added = 0;
+	enum separate_status status = SEPARATE_OK;
+
+	if (!rest || add_tones(rec->y1, rec->y2, n, TONES_SIDE, c, &added) != NUM_OK)
+		status = SEPARATE_MEMORY;
+	while (status == SEPARATE_OK && added > 0) {
+		struct tones_track track;
+
+		status = choose_hop(par, rec, c);
+		for (int k = 0; k < 2 && status == SEPARATE_OK; k++) {
+			memcpy(rest + (size_t)k * n, k ? rec->y2 : rec->y1,
+				n * sizeof *rest);
+			status = take_tones(c, rest + (size_t)k * n, n, &track);
+		}
+		if (status == SEPARATE_OK &&
+			add_tones(rest, rest + n, n, NEAR_SIDE, c, &added) != NUM_OK)
+			status = SEPARATE_MEMORY;
+	}
+	free(rest);
+	return status;
+}
+
 static enum separate_status find_tones(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
-	enum { ENOUGH = 16384 };
-	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
+	size_t n = rec->n, hop = n < 2 * LONG_HOP ? n : LONG_HOP;
 	struct tones_track track;
 	struct calibration t;
 	enum separate_status status = SEPARATE_OK;
 
+	c->tone_hop = hop;
 	if (par->tones != CALIBRATE_FIND_TONES) {
 		c->tones = par->tones;
 		memcpy(c->omega, par->omega, sizeof c->omega);
 		sort_numbers(c->omega, (size_t)c->tones);
+		if (c->tones > 0)
+			status = choose_hop(par, rec, c);
 	} else {
-		if (tones_find(rec->y1, rec->y2, n, TONES_MAX, c->omega, &c->tones) !=
-				NUM_OK ||
-			tones_confirm(rec->y1 + from, rec->y2 + from, some,
-				1 - calibration_lost(c), &c->tones, c->omega) != NUM_OK)
-			return SEPARATE_MEMORY;
+		status = search_tones(par, rec, c);
 	}
-	c->tone_hop = n < 2 * LONG_HOP ? n : LONG_HOP;
+	if (status != SEPARATE_OK)
+		return status;
 	rec->drift = 0;
 	if (c->tones > 0) {
-		size_t hop = c->tone_hop;
-
-		status = choose_hop(par, rec, c);
-		if (status != SEPARATE_OK)
-			return status;
 		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
 		t = *c;
 		t.tone_hop = hop;

@@ -11,7 +11,6 @@
 #include <string.h>
 
 enum {
-	SIDE = 64,
 	CLIP = 3,
 	TERMS_MAX = 2 * TONES_MAX + 1,
 	RUN = 64 /* samples for each sine and cosine that is computed */
@@ -45,21 +44,21 @@ static void add_clipped(struct periodogram *p, const double *y, size_t n, double
 	periodogram_add(p, 1, power, n / 2 + 1);
 }
 
-static int pick_lines(const double *power, size_t n, int max, double *omega)
+static int pick_lines(const double *power, size_t n, size_t side, int max, double *omega)
 {
 	enum { KEEP = 256 };
 	struct line line[KEEP] = { { 0, 0 } };
-	double around[2 * SIDE];
+	double around[2 * TONES_SIDE];
 	int count = 0;
 
 	for (size_t k = 3; k + 3 <= n / 2; k++) {
-		size_t from = k > SIDE ? k - SIDE : 0,
-		       to = k + SIDE < n / 2 ? k + SIDE : n / 2;
+		size_t from = k > side ? k - side : 0,
+		       to = k + side < n / 2 ? k + side : n / 2;
 		int m = 0;
 
 		if (power[k] <= power[k - 1] || power[k] < power[k + 1])
 			continue;
-		for (size_t i = from; i < to && m < 2 * SIDE; i++)
+		for (size_t i = from; i < to; i++)
 			if (i + 2 < k || i > k + 2)
 				around[m++] = power[i];
 		if (!robust_median_at_most(around, (size_t)m, power[k] / 40) ||
@@ -82,8 +81,8 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 	return count;
 }
 
-enum num_status tones_find(
-	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones)
+enum num_status tones_find(const double *y1, const double *y2, size_t n, int side,
+	int max, double *omega, int *tones)
 {
 	struct periodogram *p;
 	double *power;
@@ -100,7 +99,8 @@ enum num_status tones_find(
 	if (status == NUM_OK) {
 		add_clipped(p, y1, n, power);
 		add_clipped(p, y2, n, power);
-		*tones = pick_lines(power, n, max > TONES_MAX ? TONES_MAX : max, omega);
+		*tones = pick_lines(
+			power, n, (size_t)side, max > TONES_MAX ? TONES_MAX : max, omega);
 	}
 	periodogram_free(p);
 	free(power);

@@ -32,9 +32,9 @@ static struct converter *converter_of(struct separate *s, int sensor, int compon
 enum num_status separate_append(struct separate *s, const double *x, size_t n)
 {
 	enum { BLOCK = 256 };
-	double turned[2][BLOCK];
+	double turned[CHANNELS_MAX][BLOCK];
 	double along = cos(s->par.angle), across = sin(s->par.angle);
-	size_t lost[BLOCK], some;
+	size_t lost[2][BLOCK], some;
 
 	for (; n > 0; n -= some, x += some * (size_t)s->channels) {
 		some = n < BLOCK ? n : BLOCK;
@@ -45,22 +45,27 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 			for (size_t i = 0; i < some; i++, in += s->channels) {
 				double one = in[0], two = in[components(s) - 1];
 
-				lost[i] =
+				lost[sensor][i] =
 					converter_next(converter_of(s, sensor, 0), &one);
-				turned[0][i] = sign * one;
+				turned[sensor][i] = sign * one;
 				if (!has_quadrature(s))
 					continue;
 				size_t other =
 					converter_next(converter_of(s, sensor, 1), &two);
-				lost[i] = other > lost[i] ? other : lost[i];
-				turned[0][i] = sign * (along * one + across * two);
-				turned[1][i] = sign * (along * two - across * one);
+				lost[sensor][i] =
+					other > lost[sensor][i] ? other : lost[sensor][i];
+				turned[sensor][i] = sign * (along * one + across * two);
+				turned[sensor + 2][i] =
+					sign * (along * two - across * one);
 			}
-			for (int k = 0; k < components(s); k++)
-				if (buffer_append(&s->buffer[sensor + 2 * k], turned[k],
-					    lost, some) != NUM_OK)
-					return NUM_MEMORY;
 		}
+		for (int k = 0; k < s->channels && s->calibrated; k += 2)
+			calibration_unmix(
+				s->cal.crosstalk, turned[k], turned[k + 1], some);
+		for (int k = 0; k < s->channels; k++)
+			if (buffer_append(&s->buffer[k], turned[k], lost[k % 2], some) !=
+				NUM_OK)
+				return NUM_MEMORY;
 	}
 	return NUM_OK;
 }
