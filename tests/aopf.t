@@ -190,14 +190,6 @@ fails "a bad first value" 3 'fails after value 1 if .* from above.*--direction u
 	aopf -y 7 --lives-only start.tsv
 ok "the direction is given" aopf -y 7 --direction up --lives-only start.tsv
 
-# The error of the best order can never fall by all of itself.
-for g in 0 0.3 1; do
-	aopf --hysteresis $g --stats changes.stats rise.tsv >/dev/null
-	column order_changes changes.stats
-done >changes
-is "a hysteresis of 1 keeps the first order" "$(sed -n 3p changes)" 0
-rising "a hysteresis of 0.3 at least halves the changes of order" 1 "$(sed -n 2p changes)" $(($(sed -n 1p changes) / 2))
-
 # A peak at 8 and a step at 12: life is over from the K-th value in a row beyond the threshold
 # on, and is predicted for the other rows.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 20; t++) print t "\t" (t == 8 || t >= 12 ? 3 : 1) }' >step.tsv

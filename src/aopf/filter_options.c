@@ -9,7 +9,7 @@ static const char *const orders[] = { "window", "insample", NULL };
 struct filtering filtering = { .particles = 300, .seed = 1 };
 
 static struct opt_choice order = { ORDER_WINDOW, 0 };
-static double hysteresis = 0.03, share = 0.5, process = NAN, noise = NAN;
+static double share = 0.5, process = NAN, noise = NAN;
 static long largest = 60, window = 50;
 
 struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
@@ -19,9 +19,6 @@ struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 		"largest order that may be chosen", NULL, 0 },
 	{ 0, "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
 		"number of rows whose forecast errors select the order", NULL, 0 },
-	{ 0, "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
-		"smallest relative decrease of the error that changes the order", NULL,
-		0 },
 	{ 0, "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
 		"number of particles", NULL, 0 },
 	{ 0, "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
@@ -40,8 +37,7 @@ struct adaptive *filtering_new(int unit)
 	struct adaptive_par par = {
 		.filter = { (size_t)filtering.particles, 0, share },
 		.order = { order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
-			order.word < 0 ? (int)order.value : (int)largest, (int)window,
-			hysteresis },
+			order.word < 0 ? (int)order.value : (int)largest, (int)window },
 		.process = process,
 		.noise = noise,
 		.seed = (uint64_t)filtering.seed,

@@ -141,12 +141,7 @@ static void choose(struct order *o, int high)
 			best = p;
 		}
 	}
-	if (best == o->now.chosen)
-		return;
-	if (o->par.rule == ORDER_WINDOW && o->now.chosen > 0 &&
-		least >= (1 - o->par.hysteresis) * criterion(o, o->now.chosen, rows))
-		return;
-	o->now.counts.changes += o->now.chosen > 0;
+	o->now.counts.changes += o->now.chosen > 0 && best != o->now.chosen;
 	o->now.chosen = best;
 }
 

@@ -7,7 +7,7 @@
  * their ages.  Rules:
  *
  *   window    smallest mean squared error over the last rows, all orders over the same
- *             rows; the order changes only when that falls by the hysteresis
+ *             rows
  *   insample  smallest mean squared residual of the fit itself, from order 4 on
  *   fixed     always the largest order
  */
@@ -20,10 +20,8 @@ enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_FIXED };
 
 struct order_par {
 	enum order_rule rule;
-	int largest;       /* largest order P >= 4, or the fixed order */
-	int window;        /* rows over which errors are averaged, >= 1 */
-	double hysteresis; /* smallest relative decrease of the error that changes the
-			      order */
+	int largest; /* largest order P >= 4, or the fixed order */
+	int window;  /* rows over which errors are averaged, >= 1 */
 };
 
 struct order;

@@ -7,11 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows whose errors tell what is usual, and the fewest of them that tell an outlier.  The
- * errors of the predictions of 31 measured series and of 12 simulated kinds, over those
- * of the last value, are .239 and .784 with the last 10, .235 and .783 with the last 20.
- */
-enum { RECENT = 20, SETTLED = 8 };
+/* Rows whose errors tell what is usual.  The errors of the predictions of 31 measured
+ * series and of 12 simulated kinds, over those of the last value, are .239 and .784 with
+ * the last 10, .235 and .783 with the last 20. */
+enum { RECENT = 20 };
 /* States that determine a grey model; fewer are continued by the last one. */
 enum { MODEL = 3 };
 
@@ -295,8 +294,8 @@ static int is_outlier(struct adaptive *a, double y, double forecast, double nois
 	double usual = fmax(noise * noise, missed_lately(a)),
 	       miss = fmin(fabs(y - forecast), fabs(y - a->observed));
 
-	a->outlier = !a->outlier && a->misses >= SETTLED &&
-		     miss * miss > OUTLYING * OUTLYING * usual;
+	a->outlier =
+		!a->outlier && a->misses > 0 && miss * miss > OUTLYING * OUTLYING * usual;
 	a->outliers += (unsigned long)a->outlier;
 	return a->outlier;
 }

@@ -180,16 +180,15 @@ static double hasten(double time, double growth)
 
 /* How the time to a level strays because the curve of the damage on the way there is not
  * known, of which a growth is a part; h: of the present damage.  A straight line does not
- * stray, and what the trends and their rates leave uncertain is a part of it. */
+ * stray, and what the trends leave uncertain is a part of it. */
 static void let_stray(struct crossing *p, double h, double spread)
 {
 	double v = p->line[LINE_V], time = (p->limit - h) / v,
-	       bend = log(p->straight / v / hasten(time, p->growth)),
-	       known = spread + p->line[LINE_VV] * p->variance / (v * v);
+	       bend = log(p->straight / v / hasten(time, p->growth));
 
 	if (!isfinite(bend))
 		return;
-	p->stray = sqrt(fmax(0, STRAY * STRAY * fabs(bend) - known));
+	p->stray = sqrt(fmax(0, STRAY * STRAY * fabs(bend) - spread));
 	p->lean = LEAN * bend;
 }
 
