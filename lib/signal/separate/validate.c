@@ -6,10 +6,8 @@
 #include <stdlib.h>
 
 enum {
-	FEW = 8,     /* fewest delays for an estimate of the variance */
-	REACH = 6,   /* durations on either side of a strong pulse */
-	CLASSES = 8, /* of distance in a duration */
-	PLACES = 2 * REACH * CLASSES
+	FEW = 8,    /* fewest delays for an estimate of the variance */
+	CLASSES = 8 /* of distance in a duration */
 };
 
 struct delay {
@@ -20,10 +18,12 @@ struct delay {
 struct validation {
 	struct delay delay[EVIDENCE_KEPT];
 	unsigned char doubted[EVIDENCE_KEPT], at_edge[EVIDENCE_KEPT];
-	size_t delays, rows;    /* taken in so far */
-	double middle, half;    /* of the range of delays; half 0: not known */
-	struct flow flow, told; /* as estimated, and as told before */
-	double recurring[PLACES], distant[CLASSES], groups;
+	size_t delays, rows;         /* taken in so far */
+	double middle, half;         /* of the range of delays; half 0: not known */
+	struct flow flow, told;      /* as estimated, and as told before */
+	double place[EVIDENCE_KEPT]; /* of weak pulses beside the nearest larger one */
+	size_t places;
+	double distant[CLASSES], groups;
 };
 
 struct validation *validation_new(void)
@@ -168,45 +168,65 @@ static size_t nearest_larger(const struct evidence *e, size_t m, size_t i)
 	return found;
 }
 
-/* Class of the place of a pulse beside the nearest larger one, if both have the same
- * velocity within the error, or -1. */
-static int place_of(const struct evidence *e, size_t m, size_t i)
+/* Durations by which a pulse less than half as high as the nearest larger one follows it;
+ * else NAN. */
+static double weak_place(const struct evidence *e, size_t m, size_t i)
 {
-	size_t larger = nearest_larger(e, m, i);
-	const struct evidence *l = &e[larger];
-	double place = floor((e[i].time - l->time + REACH) * CLASSES);
+	const struct evidence *l = &e[nearest_larger(e, m, i)];
 
-	return larger != i && place >= 0 && place < PLACES && e[i].var > 0 &&
-			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
-		       ? (int)place
-		       : -1;
+	return fabs(e[i].amplitude) < 0.5 * fabs(l->amplitude) ? e[i].time - l->time
+							       : NAN;
 }
 
-/* The same of a pulse that is less than half as high as the larger one. */
-static int weak_place(const struct evidence *e, size_t m, size_t i)
-{
-	return fabs(e[i].amplitude) < 0.5 * fabs(e[nearest_larger(e, m, i)].amplitude)
-		       ? place_of(e, m, i)
-		       : -1;
-}
-
-/* Class of the distance, whichever of both is first, within a duration; else -1. */
+/* Class of the distance of a pulse from the nearest larger one, whichever is first,
+ * within a duration, if both have the same velocity within the error; else -1. */
 static int distance_of(const struct evidence *e, size_t m, size_t i)
 {
-	int place = place_of(e, m, i), after = place - PLACES / 2;
-	int k = after < 0 ? -1 - after : after;
+	const struct evidence *l = &e[nearest_larger(e, m, i)];
+	double apart = fabs(e[i].time - l->time);
 
-	return place < 0 || k >= CLASSES ? -1 : k;
+	return l != &e[i] && apart < 1 && e[i].var > 0 &&
+			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
+		       ? (int)(apart * CLASSES)
+		       : -1;
 }
 
-/* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so
- * many places and different velocities, does not reach that. */
+/* Probability that noise alone moves as many delays of a group to the limits, or that
+ * chance puts as many weak pulses at one place: at most one correct group in ten thousand
+ * is doubted for either. */
+static const double RARELY = 1e-4;
+
+/* 1 - the probability that a Poisson number is less than count. */
+static double poisson_tail(int count, double mean)
+{
+	double term = exp(-mean), tail = 1;
+
+	for (int k = 0; k < count; k++) {
+		tail -= term;
+		term *= mean / (k + 1);
+	}
+	return tail;
+}
+
+/* 1 if a tenth of the groups have a weak pulse at this place, more than chance explains:
+ * particles are as frequent there as farther off, up to PLACE durations. */
 static int recurs(
 	const struct validation *v, const struct evidence *e, size_t m, size_t i)
 {
-	int place = weak_place(e, m, i);
+	static const double SAME = 0.0625, PLACE = 0.25;
+	const size_t kept = evidence_kept(v->places);
+	const double place = weak_place(e, m, i);
+	int here = 0, around = 0;
 
-	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
+	for (size_t k = 0; k < kept; k++) {
+		double apart = fabs(v->place[k] - place);
+
+		here += apart < SAME;
+		around += apart >= SAME && apart < PLACE;
+	}
+	return here > 0.1 * v->groups &&
+	       poisson_tail(here, (around + 1) * SAME / (PLACE - SAME)) * (double)kept <
+		       RARELY;
 }
 
 /* 1 if the distance is more frequent than a smaller one, by four standard deviations and
@@ -233,11 +253,11 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 		take_delay(v, e + i, m);
 		v->groups++;
 		for (size_t k = 0; k < m; k++) {
-			int place = weak_place(e + i, m, k),
-			    distance = distance_of(e + i, m, k);
+			double place = weak_place(e + i, m, k);
+			int distance = distance_of(e + i, m, k);
 
-			if (place >= 0)
-				v->recurring[place]++;
+			if (!isnan(place))
+				v->place[v->places++ % EVIDENCE_KEPT] = place;
 			if (distance >= 0)
 				v->distant[distance]++;
 		}
@@ -245,17 +265,13 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_flow(v);
 }
 
-/* Probability that noise alone moves as many delays of a group to the limits: at most one
- * correct group in ten thousand is doubted for it. */
-static const double RARELY = 1e-4;
-
 /* 1 if more delays lie at a limit of the range than noise explains, without those of
  * pulses that do not fit, which are doubted already.  Their number is treated as Poisson
  * distributed, which has the longer tail. */
 static int too_many_at_limit(
 	const struct validation *v, const struct evidence *e, size_t m)
 {
-	double mean = 0, term, tail = 1;
+	double mean = 0;
 	int count = 0;
 
 	if (!(v->half > 0) || isinf(v->flow.var))
@@ -269,12 +285,7 @@ static int too_many_at_limit(
 				      erfc((v->half + off) / (M_SQRT2 * sd)));
 		count += fabs(e[i].delay - v->middle) > (1 - 1e-6) * v->half;
 	}
-	term = exp(-mean);
-	for (int k = 0; k < count; k++) {
-		tail -= term;
-		term *= mean / (k + 1);
-	}
-	return tail < RARELY;
+	return poisson_tail(count, mean) < RARELY;
 }
 
 static void test_group(const struct validation *v, struct evidence *e, size_t m)
