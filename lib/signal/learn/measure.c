@@ -397,6 +397,16 @@ static const double NEAREST = 1.5, FARTHEST = 4;
 /* Share of the transit time by which the fastest and the slowest particle may differ. */
 static const double VARIES = 0.3;
 
+/* *low: the lag at which the autocorrelation of both channels is lowest. */
+static enum separate_status find_low(
+	const struct record *rec, const double *y1, const double *y2, double *low)
+{
+	if (align_autocorrelation(y1, y2, rec->n, rec->n / 4, rec->work) != NUM_OK)
+		return SEPARATE_MEMORY;
+	*low = learn_lowest_lag(rec->work, rec->n / 4);
+	return SEPARATE_OK;
+}
+
 /* NO_LAG if y1 correlates with a later y2 no more than channels of noise do, whatever its
  * spectrum: in units of 1 / sqrt(n), and compared with other lags.  Regular trains of
  * pulses, which repeat their correlation farther away, have at least half of their power
@@ -407,12 +417,12 @@ static enum separate_status check_lag(const struct record *rec, const double *y1
 	size_t n = rec->n;
 	double lag = (double)c->shift, low, peak[2];
 	struct align_range range[2];
+	enum separate_status status = find_low(rec, y1, y2, &low);
 
+	if (status != SEPARATE_OK)
+		return status;
 	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
 		return SEPARATE_NO_LAG;
-	if (align_autocorrelation(y1, y2, n, n / 4, rec->work) != NUM_OK)
-		return SEPARATE_MEMORY;
-	low = learn_lowest_lag(rec->work, n / 4);
 	range[0] = (struct align_range){ NEAREST * low, FARTHEST * low };
 	range[1] = (struct align_range){ fmax(NEAREST * low, VARIES * lag), INFINITY };
 	if (align_elsewhere(y1, y2, n, n / 2, lag, c->correlation < 0.5 ? 2 : 1, range,
@@ -476,31 +486,68 @@ static enum separate_status find_opposite(
  * rightly: impulses (3), turbulent flow (5) and laminar flow (6). */
 static const double LOUD = 4;
 
-/* The lag at which the channels correlate where samples count by their logarithm: small
- * particles then tell as much of it as large ones, and impulses little. */
-static enum separate_status find_lag_by_all(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+/* y: m means of the logarithms of as many samples of x as box, less their mean. */
+static void take_loudness(const double *x, double noise, size_t box, double *y, size_t m)
 {
-	size_t n = rec->n;
-	double *y = malloc(2 * n * sizeof *y);
-	struct record even = *rec;
+	double mean;
+
+	for (size_t i = 0; i < m; i++) {
+		y[i] = 0;
+		for (size_t k = 0; k < box; k++)
+			y[i] += asinh(x[i * box + k] / (LOUD * noise)) / (double)box;
+	}
+	mean = mean_of(y, m);
+	for (size_t i = 0; i < m; i++)
+		y[i] -= mean;
+}
+
+/* The lag at which the channels correlate where means of samples count by their
+ * logarithm: small particles then tell as much of it as large ones, impulses little, and
+ * delays that differ by less than a mean add up. */
+static enum separate_status find_lag_by_means(const struct calibrate_par *par,
+	const struct record *rec, size_t box, double *y, struct calibration *c)
+{
+	struct record means = *rec;
 	struct calibration other = *c;
 	enum separate_status status;
 
-	if (!y)
-		return SEPARATE_MEMORY;
-	for (size_t i = 0; i < n; i++) {
-		y[i] = asinh(rec->y1[i] / (LOUD * c->noise[0]));
-		y[n + i] = asinh(rec->y2[i] / (LOUD * c->noise[1]));
+	means.n = rec->n / box;
+	means.y1 = y;
+	means.y2 = y + means.n;
+	take_loudness(rec->y1, c->noise[0], box, means.y1, means.n);
+	take_loudness(rec->y2, c->noise[1], box, means.y2, means.n);
+	status = find_lag(par, &means, &other);
+	if (status == SEPARATE_OK && other.shift == 0)
+		status = SEPARATE_NO_LAG;
+	if (status == SEPARATE_OK)
+		status = check_lag(&means, means.y1, means.y2, &other);
+	if (status == SEPARATE_OK) {
+		c->correlation = other.correlation;
+		c->shift = other.shift * (long)box;
+		c->transit = other.transit * (double)box;
 	}
-	even.y1 = y;
-	even.y2 = y + n;
-	status = find_lag(par, &even, &other);
+	return status;
+}
+
+/* The same, of single samples or, if they have no lag, of means of an eighth, a quarter
+ * and a half of a pulse.  Of 31 records in turbulent and laminar flow three then have 18,
+ * 8 and 28 more particles found rightly, the last of them by longer means than an eighth.
+ */
+static enum separate_status find_lag_by_all(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	static const double part[] = { 0, 0.25, 0.5, 1 };
+	double low, *y = malloc(2 * rec->n * sizeof *y);
+	enum separate_status status =
+		y ? find_low(rec, rec->y1, rec->y2, &low) : SEPARATE_MEMORY;
+
 	if (status == SEPARATE_OK)
-		status = check_lag(&even, even.y1, even.y2, &other);
+		status = SEPARATE_NO_LAG;
+	for (size_t k = 0; status == SEPARATE_NO_LAG && k < sizeof part / sizeof *part;
+		k++)
+		status =
+			find_lag_by_means(par, rec, (size_t)fmax(part[k] * low, 1), y, c);
 	free(y);
-	if (status == SEPARATE_OK)
-		*c = other;
 	return status;
 }
 
