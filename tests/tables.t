@@ -33,6 +33,8 @@ fails 'a changed cell of a stream with DOS endings' 1 'damaged or edited' record
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
 is 'three spellings of a missing value are read' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
 
+printf '# units: s m mm\nt\ty\n0\t1\n1\t2\n2\t4\n' >units
+fails 'units of columns that were cut off' 1 "has more units than there are columns, 2" aopf units
 fails 'y beside others, without t, is no series' 1 "no column 't'" sh -c "printf 'x\ty\n0\t1\n' | aopf"
 refuse() {
 	# shellcheck disable=SC2059 # the escapes are the table

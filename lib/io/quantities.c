@@ -24,15 +24,27 @@ double table_quantity(const struct table_in *t, const char *key, enum unit unit)
 	return value;
 }
 
+/* The word after that at text. */
+static const char *next_word(const char *text)
+{
+	text += strcspn(text, " \t");
+	return text + strspn(text, " \t");
+}
+
 const char *table_unit_word(const struct table_in *t, int column, char word[UNIT_WORD])
 {
-	const char *units = table_key(t, "units");
+	const char *units = table_key(t, "units"), *rest = units;
 	size_t n;
 
-	for (int i = 0; units && i < column; i++) {
-		units += strcspn(units, " \t");
-		units += strspn(units, " \t");
-	}
+	/* Fewer are those of the first columns, to which others have been appended. */
+	for (int i = 0; rest && i < table_columns(t); i++)
+		rest = next_word(rest);
+	if (rest && *rest)
+		die(EXIT_RUN,
+			"%s: '# units: %s' has more units than there are columns, %d",
+			table_name(t), units, table_columns(t));
+	for (int i = 0; units && i < column; i++)
+		units = next_word(units);
 	n = units && column >= 0 ? strcspn(units, " \t") : 0;
 	snprintf(word, UNIT_WORD, "%.*s", n ? (int)n : 1, n ? units : "1");
 	return word;
