@@ -386,6 +386,19 @@ done
 	done
 } >started.tsv
 is "the start of a series is carried to the lives" "$(rwl started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
+# two SECOND TOP: gaps of one pair, of another in every other row, no higher than TOP
+two() {
+	awk -v second="$1" -v top="$2" 'BEGIN { srand(6); print "t\tgap"; for (k = 0; k < 60; k++) {
+		y = 1e-5 * (1 + k / 90 * (k % 2 ? second : 1)) + 1e-7 * rand(); print 3600 * k "\t" (y > top ? top : y) } }'
+}
+two 0.3 1 >two.tsv
+two 1 1.5e-5 >ceiling.tsv
+two 1 1 >one.tsv
+for how in mean filter; do
+	fails "two pairs in one state, $how" 3 "every other value lies on a course of its own" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
+	fails "a sensor at its ceiling, $how" 3 "the last values are equal: the sensor sticks" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how ceiling.tsv
+	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv
+done
 printf 'unit\tt\tleakage\na\t0\t3e-5\nb\t1\t3e-5\n' >units.tsv
 fails "the state of two units" 1 "units.tsv: line 3: unit 'b' after 'a': want rows of one unit" rwl units.tsv
 done_testing
