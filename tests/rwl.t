@@ -139,6 +139,13 @@ is "particles of a named material wear like those of their own diameter" "$? $(c
 	awk '{ printf "%.9g ", $1 }')$(wc -l <bronze.err)" "0 $(column mean own.life | awk '{ printf "%.9g ", $1 }')$(wc -l <own.err)"
 rwl --threshold-volume 1e-9m3 --wear-rate last bronze.tsv >bronze.life 2>bronze.err
 is "without the material the life is doubtful" "$? $(grep -c '2 rows are non-ferrous' bronze.err) $(grep -c '^# doubtful: the diameters' bronze.life)" "3 1 1"
+printf 'time1\tdiameter\tverdict\n1\t1e-4\talone\n2\t1e-4\tmisfit\n3\t1e-4\talone\n4\t1e-4\tmisfit\n' >doubts.tsv
+head -n 4 doubts.tsv >doubt.tsv
+printf 'volume\n1.1e-15\n1.4e-15\n' >frag.tsv
+rwl --threshold-volume 1e-10m3 --wear frag.tsv --fragment-area 1e-8m2 --calibrate doubts.tsv --quantity debris \
+	--stats s doubt.tsv >out 2>err
+is "doubtful rows of the unit for calibration are reported apart" \
+	"$(sed -n 's/^rwl: \(.*\) rows are doubtful.*/\1/p' err | tr '\n' ' ')$(column rows_doubtful s)" "2 1 3"
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2

@@ -147,7 +147,7 @@ int state_next(struct observations *s)
 				table_name(t), s->passed);
 		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
-			equivalent = verdict_equivalent();
+			equivalent |= verdict_equivalent();
 		}
 		check_lowest(s);
 		return 0;
