@@ -31,6 +31,16 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	run --threads 3 three.tsv >side
 	same "threads do not change the output (${how:-with the filter})" side whole
 done
+# A row that is refused loses none of those before it.
+awk -F '\t' -v OFS='\t' 'NR == 150 { $2 = 1 } { print }' three.tsv >refused.tsv
+for n in 1 3; do
+	aopf --unit unit --threshold 1 --direction up --lives-only --save kept$n --threads $n refused.tsv 2>err$n >rows$n
+done
+is "the rows before one that is refused are written" "$(rows rows1 | wc -l | tr -d ' ')" 148
+same "threads do not change them" rows3 rows1
+same "nor what is said" err3 err1
+aopf --unit unit --threshold 1 --direction up --lives-only --resume kept3 three.tsv | rows - >rest
+is "nor the state" "$(wc -l <rest | tr -d ' ')" 92
 fails "a state on standard output" 2 '-: an output requires a file name' aopf --save - three.tsv
 cp three.tsv kept.tsv
 fails "a state in the file that is read" 2 'the same file is read and written' aopf --save kept.tsv kept.tsv

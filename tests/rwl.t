@@ -139,6 +139,13 @@ is "particles of a named material wear like those of their own diameter" "$? $(c
 	awk '{ printf "%.9g ", $1 }')$(wc -l <bronze.err)" "0 $(column mean own.life | awk '{ printf "%.9g ", $1 }')$(wc -l <own.err)"
 rwl --threshold-volume 1e-9m3 --wear-rate last bronze.tsv >bronze.life 2>bronze.err
 is "without the material the life is doubtful" "$? $(grep -c '2 rows are non-ferrous' bronze.err) $(grep -c '^# doubtful: the diameters' bronze.life)" "3 1 1"
+printf 'time1\tdiameter\tverdict\n1\t1e-4\talone\n2\t1e-4\tmisfit\n3\t1e-4\talone\n4\t1e-4\tmisfit\n' >doubts.tsv
+head -n 4 doubts.tsv >doubt.tsv
+printf 'volume\n1.1e-15\n1.4e-15\n' >frag.tsv
+rwl --threshold-volume 1e-10m3 --wear frag.tsv --fragment-area 1e-8m2 --calibrate doubts.tsv --quantity debris \
+	--stats s doubt.tsv >out 2>err
+is "doubtful rows of the unit for calibration are reported apart" \
+	"$(sed -n 's/^rwl: \(.*\) rows are doubtful.*/\1/p' err | tr '\n' ' ')$(column rows_doubtful s)" "2 1 3"
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
@@ -386,6 +393,19 @@ done
 	done
 } >started.tsv
 is "the start of a series is carried to the lives" "$(rwl started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
+# two SECOND TOP: gaps of one pair, of another in every other row, no higher than TOP
+two() {
+	awk -v second="$1" -v top="$2" 'BEGIN { srand(6); print "t\tgap"; for (k = 0; k < 60; k++) {
+		y = 1e-5 * (1 + k / 90 * (k % 2 ? second : 1)) + 1e-7 * rand(); print 3600 * k "\t" (y > top ? top : y) } }'
+}
+two 0.3 1 >two.tsv
+two 1 1.5e-5 >ceiling.tsv
+two 1 1 >one.tsv
+for how in mean filter; do
+	fails "two pairs in one state, $how" 3 "every other value lies on a course of its own" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
+	fails "a sensor at its ceiling, $how" 3 "the last values are equal: the sensor sticks" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how ceiling.tsv
+	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv
+done
 printf 'unit\tt\tleakage\na\t0\t3e-5\nb\t1\t3e-5\n' >units.tsv
 fails "the state of two units" 1 "units.tsv: line 3: unit 'b' after 'a': want rows of one unit" rwl units.tsv
 done_testing

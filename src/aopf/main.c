@@ -187,7 +187,12 @@ struct block {
 	int n, room, cells;
 	int *first, chains; /* first item of each unit in the block */
 	int *last, lasts;   /* last item so far, by number of the unit; -1: none */
+	struct units *units;
+	struct pool *pool;
+	const struct sink *out;
 };
+
+static struct block *pending; /* its rows are written if a later one is refused */
 
 static void step_chain(void *context, size_t i, int worker)
 {
@@ -216,24 +221,35 @@ static void link_row(struct block *b)
 	b->last[number] = k;
 }
 
-static void finish_block(
-	struct block *b, struct units *units, struct pool *pool, const struct sink *out)
+static void finish_block(struct block *b)
 {
-	pool_run(pool, (size_t)b->chains, step_chain, b);
+	pending = NULL;
+	pool_run(b->pool, (size_t)b->chains, step_chain, b);
 	for (int k = 0; k < b->n; k++) {
-		put_row(out, &b->item[k].in, b->cell + (size_t)k * (size_t)b->cells,
+		put_row(b->out, &b->item[k].in, b->cell + (size_t)k * (size_t)b->cells,
 			b->cells);
 		if (b->item[k].next < 0)
-			unit_save(units, b->item[k].unit);
+			unit_save(b->units, b->item[k].unit);
 		b->last[unit_number(b->item[k].unit)] = -1;
 	}
 	b->n = b->chains = 0;
+	pending = b;
+}
+
+static void finish_pending(void)
+{
+	if (pending)
+		finish_block(pending);
 }
 
 static void read_rows(
 	struct series *in, struct units *units, struct pool *pool, const struct sink *out)
 {
-	struct block b = { .room = pool ? BLOCK : 1, .cells = unit_cells(bare) };
+	struct block b = { .room = pool ? BLOCK : 1,
+		.cells = unit_cells(bare),
+		.units = units,
+		.pool = pool,
+		.out = out };
 	size_t room = (size_t)b.room;
 	int clock = clock_column ? table_need(series_table(in), clock_column) : -1;
 	long before = 0;
@@ -244,6 +260,8 @@ static void read_rows(
 	b.item = xcalloc(room, sizeof *b.item);
 	b.cell = xcalloc(room, (size_t)(b.cells ? b.cells : 1) * sizeof *b.cell);
 	b.first = xcalloc(room, sizeof *b.first);
+	atexit(finish_pending);
+	pending = &b;
 	while (series_next(in)) {
 		struct item *item = &b.item[b.n];
 		double t = series_time(in);
@@ -264,9 +282,10 @@ static void read_rows(
 		b.n++;
 		link_row(&b);
 		if (b.n == b.room)
-			finish_block(&b, units, pool, out);
+			finish_block(&b);
 	}
-	finish_block(&b, units, pool, out);
+	finish_block(&b);
+	pending = NULL;
 	if (resume_file)
 		stats_set("rows_before", (double)before);
 	free(b.item);

@@ -71,9 +71,9 @@ int verdict_doubtful_too(void)
 
 void verdict_report(void)
 {
-	stats_set("rows_doubtful", doubtful);
-	stats_set("rows_unresolved", unresolved);
-	stats_set("rows_no_particle", foreign);
+	stats_add("rows_doubtful", doubtful);
+	stats_add("rows_unresolved", unresolved);
+	stats_add("rows_no_particle", foreign);
 	if (doubtful > 0 && !doubtful_too)
 		warn("%.0f rows are doubtful by their verdict and left out; --doubtful "
 		     "takes them in",
@@ -84,6 +84,7 @@ void verdict_report(void)
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",
 			unresolved);
+	doubtful = unresolved = foreign = 0;
 }
 
 double verdict_diameter(const struct table_in *t, double diameter)
@@ -96,7 +97,8 @@ double verdict_diameter(const struct table_in *t, double diameter)
 int verdict_equivalent(void)
 {
 	int unknown = non_ferrous > 0 && !non_ferrous_known(),
-	    vague = unclear > 0 && !non_ferrous_none();
+	    vague = unclear > 0 && !non_ferrous_none(),
+	    both = signs[0] > 0 && signs[1] > 0;
 
 	if (unknown)
 		warn("%.0f rows are non-ferrous: their diameter is that of a ferrous particle "
@@ -106,9 +108,10 @@ int verdict_equivalent(void)
 		warn("%.0f rows are of unclear class: their diameter is that of ferrous "
 		     "particles, and too small if they are not",
 			unclear);
-	if (signs[0] > 0 && signs[1] > 0)
+	if (both)
 		warn("amplitudes of %.0f rows are positive, of %.0f negative: those of one "
 		     "sign are non-ferrous, and larger than their diameter",
 			signs[0], signs[1]);
-	return unknown || vague || (signs[0] > 0 && signs[1] > 0);
+	non_ferrous = unclear = signs[0] = signs[1] = 0;
+	return unknown || vague || both;
 }

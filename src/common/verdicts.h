@@ -22,14 +22,15 @@ int verdict_column(struct table_in *t);
 enum verdict verdict_of(const struct table_in *t, int column);
 /* 1 if doubtful rows are counted in. */
 int verdict_doubtful_too(void);
-/* Says how many rows were left out, and puts them into the counters. */
+/* Says how many rows have been left out since the last report, and adds them to the
+ * counters. */
 void verdict_report(void);
 /* Diameter of the particle of the present row, of which this is in the table: that of a
  * sphere of the material of --non-ferrous, if it is of that class. */
 double verdict_diameter(const struct table_in *t, double diameter);
 /* Warns of rows whose diameter is not that of the particle, or may not be: of class
  * non-ferrous if their material is not named, of class unclear, of either sign.  1 if
- * there are any. */
+ * there have been any since the last call. */
 int verdict_equivalent(void);
 
 #endif

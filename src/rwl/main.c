@@ -298,26 +298,43 @@ static struct partition *read_fragments(char **made_by)
 /* By chance in one series of a thousand. */
 static const double TREND = 3.3;
 
-/* Says so if the rate that is taken as constant is not; its status. */
-static int check_rate(const struct forecast *f, struct lifetable *out)
+static int doubt(struct lifetable *out, const char *why, const char *more)
+{
+	table_comment(lifetable_out(out), "doubtful", "%s", why);
+	warn("%s%s", why, more);
+	return EXIT_NOCONV;
+}
+
+/* Says so if the rate that is taken as constant is not, or if the values are not those of
+ * one pair; its status. */
+static int check_state(
+	const struct observations *s, const struct forecast *f, struct lifetable *out)
 {
 	double trend = forecast_rate_trend(f);
-	const char *way = trend > 0 ? "grows" : "falls";
+	int status = 0;
+	char *more;
 
-	if (rule == RATE_MEAN && forecast_repaired(f)) {
-		table_comment(lifetable_out(out), "doubtful", "the gap falls at once");
-		warn("the gap falls at once, as after a repair, and --wear-rate mean takes "
-		     "this for wear: --wear-rate filter does not");
-		return EXIT_NOCONV;
-	}
+	if (s->alternating > 0)
+		status = doubt(out, "every other value lies on a course of its own",
+			", as those of two machines do");
+	if (forecast_stuck(f))
+		status = doubt(out, "the last values are equal",
+			": the sensor sticks or is at the end of its range");
+	if (rule == RATE_MEAN && forecast_repaired(f))
+		return doubt(out, "the gap falls at once",
+			", as after a repair, and --wear-rate mean takes this for wear: "
+			"--wear-rate filter does not");
 	if (rule == RATE_FILTER || !(fabs(trend) > TREND))
-		return 0;
-	table_comment(lifetable_out(out), "doubtful", "the rate of the gap %s", way);
-	warn("the rate of the gap %s in the course of the series (%.1f standard deviations "
-	     "of chance), and --wear-rate %s takes it as constant: --wear-rate filter "
-	     "follows it",
-		way, fabs(trend), rules[rule]);
-	return EXIT_NOCONV;
+		return status;
+	more = xprintf(
+		" in the course of the series (%.1f standard deviations of chance), and "
+		"--wear-rate %s takes it as constant: --wear-rate filter follows it",
+		fabs(trend), rules[rule]);
+	status = doubt(out,
+		trend > 0 ? "the rate of the gap grows" : "the rate of the gap falls",
+		more);
+	free(more);
+	return status;
 }
 
 /* Says so if particles are not of their diameter; its status. */
@@ -372,7 +389,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_rate(f, out) | check_sizes(out);
+	status |= check_state(&s, f, out) | check_sizes(out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

@@ -192,6 +192,11 @@ int forecast_repaired(const struct forecast *f)
 	return f->bank && bank_repaired(f->bank);
 }
 
+int forecast_stuck(const struct forecast *f)
+{
+	return f->bank && bank_stuck(f->bank);
+}
+
 double forecast_rate_trend(const struct forecast *f)
 {
 	return observed_rate_trend(&f->observed);

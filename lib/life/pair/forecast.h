@@ -61,6 +61,8 @@ void forecast_foresee(struct forecast *f);
 
 /* 1 if the gap has fallen at once, and stayed there: a repair. */
 int forecast_repaired(const struct forecast *f);
+/* 1 if the last values are equal because the sensor is frozen, see bank.h. */
+int forecast_stuck(const struct forecast *f);
 /* Trend of the rate of the gap (observed_rate_trend()). */
 double forecast_rate_trend(const struct forecast *f);
 
