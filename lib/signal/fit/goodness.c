@@ -80,16 +80,10 @@ void goodness_of_fit(const struct joint *j, int done, double boundary, int model
 		out->pulse[i] = energy < s->threshold ? SEPARATE_MISFIT : out->stretch;
 	}
 	if (too_much(chi2, dof, SIGMAS_NEVER)) {
-		const int whole = s->quiet[0] > 0 && s->quiet[1] > 0;
-		int some = 0;
-
 		for (int i = 0; i < done; i++)
-			some |= is_misfit(j, i);
-		for (int i = 0; i < done; i++)
-			if (!model_holds || j->m == 1 || (whole && !some) ||
-				is_misfit(j, i))
+			if (!model_holds || j->m == 1 || is_misfit(j, i))
 				out->pulse[i] = SEPARATE_MISFIT;
-		if (whole)
+		if (s->quiet[0] > 0 && s->quiet[1] > 0)
 			spread(j, done, out->pulse);
 		for (int i = 0; i < done; i++)
 			doubted += out->pulse[i] == SEPARATE_MISFIT;

@@ -313,8 +313,10 @@ static enum separate_status without_crosstalk(struct look *look, struct calibrat
 		status = find(&clean, &other);
 		look->attempts = clean.attempts;
 		look->work = clean.work;
-		if (status != SEPARATE_OK)
+		if (status != SEPARATE_OK) {
+			calibration_clear(&other);
 			break;
+		}
 		memcpy(removed, more, sizeof removed);
 		calibration_clear(c);
 		*c = other;
