@@ -210,11 +210,14 @@ static double poisson_tail(int count, double mean)
 }
 
 /* 1 if a tenth of the groups have a weak pulse at this place, more than chance explains:
- * particles are as frequent there as farther off, up to PLACE durations. */
+ * particles are as frequent there as farther off, up to four times.  Of 285847 pulses at
+ * random, 3 per duration, 57, 344 and 726 are doubted for 1/32, 1/16 and 1/8 of a
+ * duration; a pulse of another shape in coloured noise, whose second pulses scatter by
+ * 0.03, is found with the first two. */
 static int recurs(
 	const struct validation *v, const struct evidence *e, size_t m, size_t i)
 {
-	static const double SAME = 0.0625, PLACE = 0.25;
+	static const double SAME = 0.03125;
 	const size_t kept = evidence_kept(v->places);
 	const double place = weak_place(e, m, i);
 	int here = 0, around = 0;
@@ -223,11 +226,10 @@ static int recurs(
 		double apart = fabs(v->place[k] - place);
 
 		here += apart < SAME;
-		around += apart >= SAME && apart < PLACE;
+		around += apart >= SAME && apart < 4 * SAME;
 	}
 	return here > 0.1 * v->groups &&
-	       poisson_tail(here, (around + 1) * SAME / (PLACE - SAME)) * (double)kept <
-		       RARELY;
+	       poisson_tail(here, (around + 1) / 3.0) * (double)kept < RARELY;
 }
 
 /* 1 if the distance is more frequent than a smaller one, by four standard deviations and
