@@ -101,8 +101,8 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 int opt_given(const char *word);
 /* 1 if it was, and its number has no unit. */
 int opt_given_bare(const char *word);
-/* Dies if one of these words, separated by blanks, was given without an option that it
- * would otherwise have no effect without. */
+/* Dies if an option of these words, separated by blanks, was given without the other one,
+ * which it needs to have an effect. */
 void opt_require(const char *other, const char *words);
 /* The word of the first of these rows whose option was given, or NULL. */
 const char *opt_any_given(const struct opt *table);
