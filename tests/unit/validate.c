@@ -185,6 +185,44 @@ static void test_signs(int one_in, int expected)
 	validation_free(v);
 }
 
+/* Two thousand groups of two, a third of the weak pulses at one distance. */
+static void test_long(void)
+{
+	struct validation *v = validation_new();
+	int missed = 0, many = 2000;
+
+	for (int g = 1; g <= many; g++) {
+		double u = philox_uniform(19, 0, RNG_PARTICLE, (uint64_t)g);
+		struct evidence e[2] = { { .group = g, .fits = 1, .amplitude = 20 },
+			{ .group = g, .fits = 1, .amplitude = 1 } };
+
+		e[0].delay = e[1].delay = SPREAD * normal(190000 + (uint64_t)g);
+		e[0].var = e[1].var = 0.01;
+		e[1].time = g % 3 ? 0.1 + 1.9 * u : 0.7;
+		validation_test(v, e, 2);
+		missed += g > many / 2 && g % 3 == 0 && !e[1].doubted;
+	}
+	ok(missed == 0, "a weak pulse that recurs is doubted after %d groups, too", many);
+	validation_free(v);
+}
+
+/* One negative particle, alone, after as many positive ones as are given. */
+static void test_first_negative(int before)
+{
+	struct validation *v = validation_new();
+	struct evidence e = { .fits = 1, .pulse = 1, .var = 0.01 };
+
+	for (int g = 1; g <= before + 1; g++) {
+		e.group = g;
+		e.delay = SPREAD * normal(200000 + (uint64_t)g);
+		e.amplitude = g > before ? -20 : 20;
+		validation_test(v, &e, 1);
+	}
+	ok(!e.doubted, "the first negative particle after %d positive ones is believed",
+		before);
+	validation_free(v);
+}
+
 /* A crowd: up to ten thousand groups of pulses at random, of any height. */
 static void test_crowd(double density, int groups, uint64_t seed)
 {
@@ -266,6 +304,9 @@ int main(void)
 	test_favourite();
 	test_signs(ROWS, 1);
 	test_signs(2, 0);
+	test_long();
+	test_first_negative(20);
+	test_first_negative(5000);
 	test_crowd(0.3, 10000, 21);
 	test_crowd(3, 10000, 22);
 	test_crowd(3, 40, 23);
