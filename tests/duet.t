@@ -190,6 +190,21 @@ near "dense: the sum of squares is right within 15 %" "$(awk -F '\t' '/^#/ { nex
 	{ t = $c["end"] - $c["begin"]; s += t * $c["square"]; all += t }
 	END { print s / all }' sections.tsv)" 1000 150
 
+# Stretches too short to be counted: whatever Campbell's theorem gives by chance, what the
+# rows say is in them is no more than there is.
+sensorsim --uniform 40um:180um --number 800 --duration 4s --snr 40dB --pulse lorentz \
+	--lag 0:0.4ms --seed 405 --truth truth.tsv >tails.au
+duet --sections sections.tsv tails.au >found.tsv 2>err
+is "short dense stretches: doubtful" $? 3
+awk -F '\t' '/^#/ { next } $1 == "section" || $1 == "particle" && $2 == "time1" { file++; for (i = 1; i <= NF; i++) c[$i] = i; next }
+	file == 1 && $c["verdict"] == "unresolved" { from[$c["section"]] = $c["begin"]; to[$c["section"]] = $c["end"] }
+	file == 2 { if ($c["kind"] == "particle") { time[n] = $c["time1"]; a[n++] = $c["amplitude"] } }
+	file == 3 && $c["verdict"] == "unresolved" { k = $c["section"]; sources = volume = 0; rows++
+		for (i = 0; i < n; i++) if (time[i] >= from[k] && time[i] < to[k]) { sources++; volume += a[i] }
+		more += $c["sources"] > sources || ($c["amplitude"] != "nan" && $c["sources"] * $c["amplitude"] > volume) }
+	END { print (rows > 10), more + 0 }' sections.tsv truth.tsv found.tsv >more
+is "short dense stretches: number and volume are lower bounds" "$(cat more)" "1 0"
+
 # Filtered records.  "filter" in the header is how bpfilter tells what a record has passed.
 passed() {
 	head -c 4096 "$1" | strings | sed -n 's/^filter //p'

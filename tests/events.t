@@ -62,6 +62,17 @@ like "a limit and a sensor that stands still: the samples are counted and report
 is "a limit and a sensor that stands still: the table says the same" \
 	"$(sed -n 's/^# missing: //p' found.tsv)" "$(sed 's/^duet: missing.au: //' err)"
 
+# All that is measured of a particle ten times as large as the limit is where it changes its
+# sign, which is one lobe.
+sensorsim --rate 16kHz --uniform 60um:150um --number 80 --duration 14s --snr 36dB --lag 0:0.4ms \
+	--seed 209 >s.au
+sigconvert -o text s.au | grep -v '^#' | awk -F '\t' -v OFS='\t' '/^[0-9]/ { for (i = 2; i <= 3; i++)
+	$i = $i > 0.3 ? 0.3 : $i < -0.3 ? -0.3 : $i } { print }' | sigconvert --from text >limits.au
+duet limits.au >found.tsv 2>err
+is "no particle beyond both limits of the converter is a bubble" "$(verdicts found.tsv bubble)" 0
+is "all particles beyond both limits are found" \
+	"$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap)))" 80
+
 # Nothing can be learned from shocks alone; the particles behind them are found.
 sensorsim --uniform 80um:150um --number 0 --shocks 3 --duration 9s --noise 20mV --seed 4 >shocks.au
 sensorsim --uniform 80um:150um --number 60 --duration 20s --noise 20mV --seed 5 >behind.au

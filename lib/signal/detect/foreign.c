@@ -173,8 +173,10 @@ static void compare(
 
 		if (wave)
 			wave[i] = NAN;
-		if (k < 1 || k + 2 >= n || (s->hidden[0] && s->hidden[0][i]) ||
-			(s->hidden[1] && memchr(s->hidden[1] + k - 1, 1, 4)))
+		if (k < 1 || k + 2 >= n ||
+			(!wave && ((s->hidden[0] && s->hidden[0][i]) ||
+					  (s->hidden[1] &&
+						  memchr(s->hidden[1] + k - 1, 1, 4)))))
 			continue;
 		y2 = s->y[1][k];
 		variance = 1;

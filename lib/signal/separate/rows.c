@@ -120,6 +120,7 @@ enum separate_status separate_dense_section(
 	double noise = separate_noise_at(s, 0, (double)from + length / 2);
 	struct channels y = channels_at(s, from);
 	struct campbell c;
+	int known;
 
 	if (!entry)
 		return SEPARATE_MEMORY;
@@ -129,19 +130,20 @@ enum separate_status separate_dense_section(
 	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
 		s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise, 1);
-	p->sources =
-		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
-	if (s->strange && p->sources < 1)
-		p->sources = 1;
+	known = c.rate_se < c.rate && c.rate * length < 1e9;
+	p->sources = known ? (int)(c.rate * length + 0.5) : 1;
 	p->t1 = (double)from + length / 2;
 	p->t2 = p->t1 + (double)s->cal.shift;
-	p->amplitude = c.amplitude;
-	p->amplitude_se = c.amplitude_se;
+	p->amplitude = known ? c.amplitude : sqrt(c.square * length);
+	/* Events that are no particles have no volume. */
+	if (s->strange && !known)
+		p->amplitude = NAN;
+	p->amplitude_se = known ? c.amplitude_se : NAN;
 	p->t1_se = p->t2_se = length / sqrt(12);
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
-	s->counters.countless += c.rate_se < c.rate ? 0 : length;
+	s->counters.countless += known ? 0 : length;
 	if (isfinite(c.unlike)) {
 		s->counters.compared += length;
 		s->counters.unlike += length * c.unlike * c.unlike;
