@@ -2,6 +2,7 @@
 #include "signal/detect/campbell.h"
 #include "num/philox.h"
 #include "tap.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,18 +10,18 @@ enum { N = 400000 };
 
 static const double rate = 0.1; /* pulses per sample */
 
-/* Ten pulses overlap everywhere; amplitudes uniform in 5 .. 15, noise 1.  sums: of a^2
- * and a^4, per sample. */
-static void make_record(uint32_t realisation, int n, const struct shape *shape,
-	double *y1, double *y2, double sums[2])
+/* Ten pulses overlap everywhere; amplitudes uniform in 0.5 .. 1.5 times size, noise 1.
+ * sums: of a^2 and a^4, per sample. */
+static void make_sizes(double size, uint32_t realisation, int n,
+	const struct shape *shape, double *y1, double *y2, double sums[2])
 {
-	double p[200], z[2];
+	double p[4000], z[2];
 
 	sums[0] = sums[1] = 0;
 	for (uint64_t k = 0; k < (uint64_t)(rate * n); k++) {
 		double t = n * philox_uniform(5, realisation, RNG_PARTICLE, 2 * k);
-		double a =
-			5 + 10 * philox_uniform(5, realisation, RNG_PARTICLE, 2 * k + 1);
+		double a = size * (0.5 + philox_uniform(5, realisation, RNG_PARTICLE,
+						 2 * k + 1));
 		size_t len;
 		long first = shape_support(shape, t, 100, &len);
 
@@ -38,6 +39,12 @@ static void make_record(uint32_t realisation, int n, const struct shape *shape,
 		y1[i] += z[0];
 		y2[i] += z[1];
 	}
+}
+
+static void make_record(uint32_t realisation, int n, const struct shape *shape,
+	double *y1, double *y2, double sums[2])
+{
+	make_sizes(10, realisation, n, shape, y1, y2, sums);
 }
 
 /* Standard errors are those of the scatter from record to record. */
@@ -99,6 +106,40 @@ static void test_other_pulse(
 	shape_free(other);
 }
 
+/* A line of the power of the pulses, where their spectrum is largest, is in one of many
+ * bands; where weak pulses have no power, their noise is no difference. */
+static void test_bands(enum pulse_shape pulse)
+{
+	enum { PART = 10000 };
+	static double y[2][PART];
+	struct shape *shape = shape_new(pulse);
+	struct campbell c;
+	double sums[2], most = 0;
+
+	for (uint32_t k = 0; k < 8; k++) {
+		memset(y, 0, sizeof y);
+		make_sizes(1, k, PART, shape, y[0], y[1], sums);
+		campbell_estimate(y[0], y[1], PART, shape, 100, 0.9, &c);
+		campbell_compare(y[0], y[1], PART, shape, 100, 0.9, &c);
+		most = fmax(most, c.unlike);
+	}
+	/* Chance leaves 0.1, and hardly ever three times that. */
+	ok(most < 0.3, "weak pulses have the spectrum of one of them");
+	near(c.square, sums[0], 3 * c.square_se, "and the sum of squares is right");
+	for (int i = 0; i < PART; i++) {
+		double line = sqrt(2 * sums[0] * 100 * shape_energy(shape)) *
+			      sin(0.008 * 2 * acos(-1) * i);
+
+		y[0][i] += line;
+		y[1][i] += 0.9 * line;
+	}
+	campbell_estimate(y[0], y[1], PART, shape, 100, 0.9, &c);
+	campbell_compare(y[0], y[1], PART, shape, 100, 0.9, &c);
+	ok(c.unlike > 0.5, "a line among them shows in the spectrum");
+	near(c.square, sums[0], 2 * c.square_se, "and in the standard error");
+	shape_free(shape);
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -125,6 +166,9 @@ int main(void)
 		"the result does not depend on the units");
 	test_other_pulse(y1, y2, shape, sums[0]);
 	test_errors(shape);
+	test_bands(PULSE_SINE);
+	test_bands(PULSE_GAUSS);
+	test_bands(PULSE_LORENTZ);
 	free(y1);
 	free(y2);
 	shape_free(shape);

@@ -37,9 +37,9 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 /* Compares the spectrum of these samples with that of the pulse and white noise: by
  * Carson's theorem pulses that arrive at random have the spectrum of one of them, so that
  * a difference shows another shape, duration or noise.  c->unlike is its root mean square
- * over bands of half a cycle per duration, relative, weighted by the power of the pulses,
- * without what chance leaves; INFINITY if n is shorter than 32 durations, or no memory.
- * The standard errors grow by as much. */
+ * over bands of equal power of the pulse, which are the narrower the longer the stretch,
+ * relative, without what chance leaves; INFINITY if n is shorter than 32 durations, or no
+ * memory.  The standard errors grow by as much. */
 void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 
