@@ -177,6 +177,13 @@ for bytes in 777 70001; do
 	same "live: blocks of $bytes bytes give the same rows" a b
 done
 
+# Particles behind noise from which nothing could be learned.
+sensorsim --uniform 80um:120um --number 40 --duration 80s --start 55s --snr 30dB --lag 0:0.4ms \
+	--mains 0.3 --truth truth.tsv >late.au
+duet late.au >late.tsv 2>err
+is "noise that resembles the noise before it: particles behind it are found" \
+	"$? $(score matched truth.tsv late.tsv)" "0 40"
+
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2

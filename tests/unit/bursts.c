@@ -88,8 +88,8 @@ static void test_pulses(void)
 	x[N / 2] += 40;
 	ok(found(), "an impulse of one sample");
 	make_noise(1, 0);
-	x[3] += 40;
-	x[N - 3] += 40;
+	x[3] += 45;
+	x[N - 3] += 45;
 	ok(found(), "impulses at the ends");
 }
 
@@ -101,11 +101,53 @@ static void test_silence(void)
 	ok(!bursts_found(x, 8, work), "nor has a record too short to tell");
 }
 
+static struct bursts_power power_of(uint64_t seed, double constant, double scale)
+{
+	struct bursts_power power;
+
+	make_noise(seed, constant);
+	for (int i = 0; i < N; i++)
+		x[i] *= scale;
+	bursts_measure(x, N, work, &power);
+	return power;
+}
+
+/* Ten thousand differences of the finest octave tell a level to 1.4 %. */
+static void test_alike(void)
+{
+	int white = 0, coloured = 0, louder = 0, other = 0, crowd = 0;
+
+	for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+		struct bursts_power a = power_of(seed, 0, 1), b = power_of(seed, 10, 1),
+				    c;
+
+		c = power_of(seed + SEEDS, 0, 1);
+		white += bursts_alike(&a, &c);
+		c = power_of(seed + SEEDS, 0, 1.1);
+		louder += bursts_alike(&a, &c);
+		other += bursts_alike(&a, &b);
+		c = power_of(seed + SEEDS, 10, 1);
+		coloured += bursts_alike(&b, &c);
+		/* pulses of four standard deviations, of which none is a burst */
+		make_noise(seed + SEEDS, 0);
+		for (int i = 0; i < 200; i++)
+			add_pulse(100 + 199.3 * i, 100, 4 / sqrt(50.));
+		bursts_measure(x, N, work, &c);
+		crowd += bursts_alike(&a, &c);
+	}
+	ok(white == SEEDS, "white noise is like white noise (%d of %d)", white, SEEDS);
+	ok(coloured == SEEDS, "coloured noise is like that of its colour (%d)", coloured);
+	ok(louder == 0, "noise a tenth louder is not (%d)", louder);
+	ok(other == 0, "nor is noise of another colour (%d)", other);
+	ok(crowd == 0, "nor are many weak pulses (%d)", crowd);
+}
+
 int main(void)
 {
 	test_noise();
 	test_slow_changes();
 	test_pulses();
 	test_silence();
+	test_alike();
 	return tap_done();
 }

@@ -378,6 +378,29 @@ static enum separate_status look_for_bursts(
 	return SEPARATE_OK;
 }
 
+/* *again: 1 if the first n samples are noise, and like the last ones that had nothing in
+ * common, from which nothing would be learned again; otherwise they are compared with. */
+static enum separate_status compare_with_noise(struct separate *s, size_t n, int *again)
+{
+	double *work = malloc((n + 1) * sizeof *work);
+	struct bursts_power power[2];
+	int found = 0;
+
+	if (!work)
+		return SEPARATE_MEMORY;
+	for (int c = 0; c < 2; c++)
+		bursts_measure(s->buffer[c].x, n, work, &power[c]);
+	free(work);
+	*again = bursts_alike(&power[0], &s->nothing[0]) &&
+		 bursts_alike(&power[1], &s->nothing[1]);
+	if (*again && look_for_bursts(s, n, &found) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
+	*again = *again && !found;
+	if (!*again)
+		memcpy(s->nothing, power, sizeof power);
+	return SEPARATE_OK;
+}
+
 /* Drops the n oldest samples, from which nothing was learned.  found: 0 if they are known
  * to be noise. */
 static enum separate_status pass_over(struct separate *s, size_t n, int found)
@@ -413,7 +436,7 @@ size_t separate_wants(const struct separate *s)
 enum separate_status separate_learn(struct separate *s)
 {
 	size_t half = s->par.learn / 2;
-	int first = 1, found;
+	int first = 1, found, again;
 	size_t n, from;
 
 	while (!s->calibrated &&
@@ -427,6 +450,15 @@ enum separate_status separate_learn(struct separate *s)
 			if (pass_over(s, from, 1) != SEPARATE_OK)
 				return SEPARATE_MEMORY;
 			continue;
+		}
+		if (!s->awaited && n == s->par.learn) {
+			if (compare_with_noise(s, n, &again) != SEPARATE_OK)
+				return SEPARATE_MEMORY;
+			first = first && !again;
+			if (again && pass_over(s, half, 0) != SEPARATE_OK)
+				return SEPARATE_MEMORY;
+			if (again)
+				continue;
 		}
 		status = calibrate_now(s, n);
 		if (s->awaited)
@@ -442,6 +474,8 @@ enum separate_status separate_learn(struct separate *s)
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		give_reason(s, status, found);
+		if (status != SEPARATE_NO_LAG || found)
+			s->nothing[0].octaves = 0;
 		if (s->buffer[0].n < s->par.learn)
 			break;
 		if (pass_over(s, half, found) != SEPARATE_OK)

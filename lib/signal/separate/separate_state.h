@@ -4,6 +4,7 @@
 #define SIGNAL_SEPARATE_STATE_H
 
 #include "num/lesser.h"
+#include "signal/detect/bursts.h"
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
@@ -123,9 +124,10 @@ struct separate {
 	int holding, group;
 	double *source;
 	struct separate_counters counters;
-	enum separate_status reason; /* why nothing could be learned */
-	int unexplained;             /* 1: although a channel stands out of its noise */
-	double effort;               /* samples of pulses computed to learn */
+	enum separate_status reason;    /* why nothing could be learned */
+	struct bursts_power nothing[2]; /* of the last noise that had nothing in common */
+	int unexplained; /* 1: although a channel stands out of its noise */
+	double effort;   /* samples of pulses computed to learn */
 	long long bad_frame;
 	int bad_channel;
 };
