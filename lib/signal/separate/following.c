@@ -92,10 +92,19 @@ void separate_set_gain(struct separate *s, long long from)
 					 separate_noise_at(s, c, at[c]);
 }
 
+/* Share of the false alarms that noise may take for a pulse to follow: by following those
+ * themselves, whose delays are anywhere in the range, it would grow without limit. */
+static const double FOLLOWED = 1e-3;
+
+static int is_clear(const struct separate *s, const struct joint_pulse *p)
+{
+	return p->a * p->a > (s->scene.threshold - 2 * log(FOLLOWED)) * p->cov[5];
+}
+
 void separate_follow(struct separate *s, const struct account *a)
 {
 	if (a->m == 1 && a->goodness.stretch == SEPARATE_ALONE &&
-		separate_is_range_free(s))
+		separate_is_range_free(s) && is_clear(s, &a->pulse[0]))
 		follow_delay(s, a->pulse[0].delta);
 	if (a->m > 0 && isnan(s->par.known.gain))
 		follow_gain(s, (double)a->from + a->pulse[0].t);
