@@ -115,7 +115,7 @@ static struct bursts_power power_of(uint64_t seed, double constant, double scale
 /* Ten thousand differences of the finest octave tell a level to 1.4 %. */
 static void test_alike(void)
 {
-	int white = 0, coloured = 0, louder = 0, other = 0, crowd = 0;
+	int white = 0, coloured = 0, louder = 0, other = 0, crowd = 0, slow = 0;
 
 	for (uint64_t seed = 1; seed <= SEEDS; seed++) {
 		struct bursts_power a = power_of(seed, 0, 1), b = power_of(seed, 10, 1),
@@ -134,12 +134,17 @@ static void test_alike(void)
 			add_pulse(100 + 199.3 * i, 100, 4 / sqrt(50.));
 		bursts_measure(x, N, work, &c);
 		crowd += bursts_alike(&a, &c);
+		make_noise(seed + SEEDS, 0);
+		add_pulse(0.5 * N, 6000, 4);
+		bursts_measure(x, N, work, &c);
+		slow += bursts_alike(&a, &c);
 	}
 	ok(white == SEEDS, "white noise is like white noise (%d of %d)", white, SEEDS);
 	ok(coloured == SEEDS, "coloured noise is like that of its colour (%d)", coloured);
 	ok(louder == 0, "noise a tenth louder is not (%d)", louder);
 	ok(other == 0, "nor is noise of another colour (%d)", other);
 	ok(crowd == 0, "nor are many weak pulses (%d)", crowd);
+	ok(slow == 0, "nor is a pulse that lasts too long to be a burst (%d)", slow);
 }
 
 int main(void)

@@ -8,6 +8,10 @@
  * error of 7 %. */
 enum { AROUND = 256 };
 
+/* Differences in an octave that two records may differ in by SIGMAS_NEVER: fewer than 49
+ * scatter too much for even one mean square of 0. */
+enum { FEWEST = 64 };
+
 /* Standard deviations, estimated from so few differences, that Gaussian noise reaches in
  * 1.2e-11 of them (7: in 1e-9; 10^5 drawn estimates), of which there are two for each
  * sample of a record from which nothing is learned: once in a thousand hours at 10 kHz.
@@ -78,7 +82,7 @@ void bursts_measure(const double *y, size_t n, double *work, struct bursts_power
 {
 	size_t count = sum_fours(y, n, work);
 
-	for (power->octaves = 0; count >= AROUND + 2 && power->octaves < BURSTS_OCTAVES;
+	for (power->octaves = 0; count >= FEWEST + 2 && power->octaves < BURSTS_OCTAVES;
 		count = sum_pairs(work, count)) {
 		int k = power->octaves++;
 
