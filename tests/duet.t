@@ -184,6 +184,13 @@ duet late.au >late.tsv 2>err
 is "noise that resembles the noise before it: particles behind it are found" \
 	"$? $(score matched truth.tsv late.tsv)" "0 40"
 
+# The same where means of eight samples are learned from, 65536 of which last 2.6 s.
+sensorsim --rate 200kHz --uniform 80um:120um --number 70 --duration 4s --gap 15ms --snr 30dB --lag 0.2ms:0.5ms \
+	--seed 3 >fast.au
+: >live.tsv
+live 3300000 fast.au | duet --latency 1s >live.tsv 2>err # 1.03 s
+at_least "live, means of samples: the first rows come within the latency" "$(grep -c -e alone -e overlap first.tsv)" 1
+
 # A record of noise alone, 3e6 samples: 30 false alarms at 1e-5, and no more by following them;
 # Rice's formula is too small by a third at so low a level, and the number has a deviation of 6.
 sensorsim --uniform 80um:120um --number 60 --duration 20s --noise 30mV --lag 0:0.4ms --seed 33 >s.au

@@ -3,6 +3,7 @@
 #include "signal/detect/align.h"
 #include "signal/learn/learn.h"
 #include "signal/separate/separate_state.h"
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,7 +82,10 @@ enum num_status separate_guess_ratio(const struct separate *s, int *ratio)
 
 size_t separate_learned_means(const struct separate *s, int ratio)
 {
-	return s->default_learn ? s->par.learn : s->par.learn / (size_t)ratio;
+	size_t most = s->par.window ? s->par.window / (size_t)ratio : SIZE_MAX;
+
+	return s->default_learn ? lesser(s->par.learn, most)
+				: s->par.learn / (size_t)ratio;
 }
 
 void separate_convert(struct separate *s, int ratio)

@@ -250,7 +250,7 @@ int separate_ratio_of(double duration, int limit, int most);
 /* *ratio: samples to average if the pulses are as long as the autocorrelation of the
  * first samples suggests. */
 enum num_status separate_guess_ratio(const struct separate *s, int *ratio);
-/* par.learn, of means. */
+/* par.learn, of means, but no longer than par.window, which --latency sets. */
 size_t separate_learned_means(const struct separate *s, int ratio);
 /* The means of the n oldest samples of so many channels; separate_clear_buffers() frees
  * them, also on failure. */
