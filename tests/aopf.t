@@ -422,7 +422,7 @@ is "the start of a series is carried to the lives" "$(aopf --threshold 0.3 start
 mkdir series failing
 for name in a_1 a_2; do
 	{
-		printf '# failure threshold: 2.8 up\n# eol_interpolated: 1186\n'
+		printf '# failure threshold: 2.8 up\n# eol_interpolated: 1186\n# units: t: hours; y: flow\n'
 		rise 1000 "${name#a_}" | awk 'NR == 1 || NR % 20 == 0'
 	} >series/$name.tsv
 done

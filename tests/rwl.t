@@ -141,6 +141,10 @@ rwl --threshold-volume 1e-9m3 --wear-rate last bronze.tsv >bronze.life 2>bronze.
 is "without the material the life is doubtful" "$? $(grep -c '2 rows are non-ferrous' bronze.err) $(grep -c '^# doubtful: the diameters' bronze.life)" "3 1 1"
 printf 'time1\tdiameter\tverdict\n1\t1e-4\talone\n2\t1e-4\tmisfit\n3\t1e-4\talone\n4\t1e-4\tmisfit\n' >doubts.tsv
 head -n 4 doubts.tsv >doubt.tsv
+fails "a material where no particles are read" 2 '--non-ferrous requires a state of --quantity debris' \
+	rwl --new --wear even.tsv --step-time 1h --non-ferrous bronze
+fails "doubtful rows of a gap" 2 '--doubtful requires a state of --quantity debris' \
+	rwl --threshold-gap 15um --doubtful gap.tsv
 printf 'volume\n1.1e-15\n1.4e-15\n' >frag.tsv
 rwl --threshold-volume 1e-10m3 --wear frag.tsv --fragment-area 1e-8m2 --calibrate doubts.tsv --quantity debris \
 	--stats s doubt.tsv >out 2>err

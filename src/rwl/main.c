@@ -377,6 +377,7 @@ int main(int argc, char **argv)
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
 	e = draw_paths(p);
+	state_check();
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
 		write_rates(e, cmd);

@@ -21,7 +21,7 @@ static const double most[] = { INFINITY, 0.1, 1e-2, 1e-2, 0.1 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
-static int equivalent;
+static int equivalent, debris; /* 1: a table of particles has been opened */
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
@@ -87,7 +87,9 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
 	if (s->value_column < 0)
 		s->value_column = table_need(t, columns[s->quantity]);
 	s->sources_column = table_find(t, "sources");
-	s->verdict_column = verdict_column(t);
+	if (s->quantity == PAIR_DEBRIS)
+		s->verdict_column = verdict_column(t);
+	debris |= s->quantity == PAIR_DEBRIS;
 	settle_units(s);
 }
 
@@ -197,6 +199,16 @@ int state_next(struct observations *s)
 			       pair_gap(s->pair, s->quantity, value - error)) /
 		       2;
 	return 1;
+}
+
+void state_check(void)
+{
+	const char *option = opt_any_given(verdict_rows);
+
+	if (!option)
+		option = opt_any_given(non_ferrous_rows);
+	if (option && !debris)
+		die(EXIT_USAGE, "--%s requires a state of --quantity debris", option);
 }
 
 int state_equivalent(void)
