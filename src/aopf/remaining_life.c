@@ -587,7 +587,7 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		     "may have changed, or a counter has wrapped",
 			unit, *unit ? ": " : "");
 	if (o->now.alternating > 0)
-		warn("%s%severy other value before %ld of them lies on a course of its own: "
+		warn("%s%s%ld rows and those before them lie on two courses by turns: "
 		     "values of two machines are told apart by --unit",
 			unit, *unit ? ": " : "", o->now.alternating);
 	if (stuck)

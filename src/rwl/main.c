@@ -315,7 +315,7 @@ static int check_state(
 	char *more;
 
 	if (s->alternating > 0)
-		status = doubt(out, "every other value lies on a course of its own",
+		status = doubt(out, "the values lie on two courses by turns",
 			", as those of two machines do");
 	if (forecast_stuck(f))
 		status = doubt(out, "the last values are equal",
