@@ -300,14 +300,19 @@ awk 'BEGIN { srand(5); print "t\tgap"
 		printf "%d\t%.6g\n", 3600 * k, 13e-6 + 3e-8 * (k < 50 ? k : k - 10) + 1e-8 * (rand() - 0.5) }' >repaired.tsv
 awk '/^[0-9]/ && $1 >= 180000 { $2 += 3e-7 } { print $1 "\t" $2 }' repaired.tsv >steady.tsv
 awk '/^[0-9]/ && $1 == 180000 { $2 -= 3e-7 } { print $1 "\t" $2 }' steady.tsv >outlier.tsv
+awk '/^[0-9]/ && $1 % 14400 == 0 { print } /^t/' repaired.tsv >short.tsv
+fails "a repair in 26 rows" 3 'the gap falls behind its rate' rwl --wear-rate mean --state-error 1e-9 --threshold-gap 17um short.tsv
+ok "filters follow it" rwl --wear-rate filter --threshold-gap 17um short.tsv
+awk '/^[0-9]/ && $1 >= 180000 { $2 += 3e-7; $1 += 36000 } { print $1 "\t" $2 }' short.tsv >halt.tsv
+ok "a gap in time is no repair" rwl --wear-rate mean --threshold-gap 17um halt.tsv
 rwl --wear-rate mean --threshold-gap 17um repaired.tsv >life.tsv 2>err
 is "a repair in a mean rate: status" "$?" 3
-is "it is named" "$(grep -c 'the gap falls at once, as after a repair' err)" 1
+is "it is named" "$(grep -c 'the gap falls behind its rate, as after a repair or a halt' err)" 1
 is "in the table too" "$(grep -c '^# doubtful: the gap falls' life.tsv)" 1
 ok "filters follow a repair" rwl --wear-rate filter --threshold-gap 17um repaired.tsv
 ok "without a repair there is no doubt" rwl --wear-rate mean --threshold-gap 17um steady.tsv
 ok "a single low reading is no repair" rwl --wear-rate mean --threshold-gap 17um outlier.tsv
-fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls at once' \
+fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls behind its rate' \
 	rwl --new --wear even.tsv --threshold-gap 17um --calibrate repaired.tsv
 ok "a calibration by one that was not" rwl --new --wear even.tsv --threshold-gap 17um --calibrate steady.tsv
 

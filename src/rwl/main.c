@@ -321,8 +321,8 @@ static int check_state(
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
 	if (rule == RATE_MEAN && forecast_repaired(f))
-		return doubt(out, "the gap falls at once",
-			", as after a repair, and --wear-rate mean takes this for wear: "
+		return doubt(out, "the gap falls behind its rate",
+			", as after a repair or a halt, and --wear-rate mean takes this for wear: "
 			"--wear-rate filter does not");
 	if (rule == RATE_FILTER || !(fabs(trend) > TREND))
 		return status;

@@ -5,7 +5,7 @@
 #include "common/time_unit.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
-#include "life/trend/bank.h"
+#include "life/pair/observed.h"
 #include "num/running.h"
 #include <math.h>
 #include <stdlib.h>
@@ -219,27 +219,22 @@ int state_equivalent(void)
 double state_slope(const char *file, const struct pair *pair, double skip)
 {
 	struct regression line = { 0 };
+	struct observed gaps = { 0 };
 	struct observations s;
 	double slope;
-	struct bank_par par = { .threshold = pair_limit(pair), .direction = 1 };
-	struct bank *bank = bank_new(&par);
 
-	if (!bank)
-		die(EXIT_RUN, "out of memory");
 	state_open(&s, file, pair);
 	while (state_next(&s)) {
 		if (isnan(s.gap) || s.t - s.first_t < skip)
 			continue;
 		regression_add(&line, s.t, s.gap);
-		if (isfinite(par.threshold) && s.quantity != PAIR_DEBRIS)
-			bank_add(bank, s.t, s.gap);
+		observed_add(&gaps, s.t, s.value, s.gap);
 	}
-	if (bank_repaired(bank))
+	if (observed_falls(&gaps))
 		die(EXIT_RUN,
-			"%s: the gap falls at once, as after a repair: no calibration by the "
+			"%s: the gap falls behind its rate, as after a repair: no calibration by the "
 			"whole life",
 			file);
-	bank_free(bank);
 	slope = regression_slope(&line);
 	if (!(slope > 0) || !isfinite(slope))
 		die(EXIT_RUN, "%s: the unit for the calibration does not wear", file);

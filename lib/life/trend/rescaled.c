@@ -106,9 +106,10 @@ int rescaled_doubtful(const struct rescaled *r, double threshold)
 
 /* Courses are told apart by a largest step of AWAY times the steps along each of them,
  * with TURNS changes between them and as many values on each.  Of 200 000 windows of
- * normal noise none look like that, of uniform noise 20, and with 5 % of outliers that are
- * all equal 161; of two machines 10 and 20 standard deviations apart in random order .38
- * and .88 do, in turn .49 and 1.  With AWAY 8 these are 7, 68, 161; .57, .88, .70 and 1. */
+ * normal noise none look like that, of uniform noise 20, and with 5 % of outliers that
+ * are all equal 161; of two machines 10 and 20 standard deviations apart in random order
+ * .38 and .88 do, in turn .49 and 1.  With AWAY 8 these are 7, 68, 161; .57, .88, .70
+ * and 1. */
 static const double AWAY = 9;
 enum { TURNS = 5 };
 
