@@ -4,8 +4,7 @@
  * A repair or a jump of wear shifts the level and leaves the steps between rows as they
  * were.  A change of the unit, or of the gain of a sensor, multiplies both by the same
  * factor.  A counter that wraps goes on from 0 where it would have reached a power of two
- * or ten.  Rows of two machines, or of two states of one, lie on two courses, in turn or in any
- * order.
+ * or ten.  Rows of two machines, or of two states of one, lie on two courses.
  */
 #ifndef LIFE_RESCALED_H
 #define LIFE_RESCALED_H
