@@ -117,6 +117,8 @@ static void check_options(void)
 			"--snr is missing: peak of a 100 um particle over the noise, dB");
 	if (isnan(arrivals) == isnan(per_ml))
 		die(EXIT_USAGE, "specify either --arrivals F or --per-ml N");
+	if (opt_given("exponent") && profile != PIPE_TURBULENT)
+		die(EXIT_USAGE, "--exponent requires --profile turbulent");
 	if (bore >= 1 && opt_given_bare("bore"))
 		warn("--bore %g m: numbers without a unit are metres: is %gmm meant?",
 			bore, bore);
