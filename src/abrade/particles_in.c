@@ -100,7 +100,8 @@ static int in_order(const void *a, const void *b)
 	return x->number < y->number ? -1 : x->number > y->number;
 }
 
-/* Two ensembles of the same numbers are no ensemble: their particles would share a gap. */
+/* Two ensembles of the same numbers are no ensemble: their particles would share a gap.
+ */
 static void check_parts(const struct source *s, const char *name)
 {
 	for (size_t i = 1; i < s->rows; i++)
