@@ -137,6 +137,9 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick coating behaves like a half-space" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "the record of a coated body has no contact modulus" "$(key estar thick.nrrd)" nan
+fails "the material of no coating" 2 '\--coating-young requires --coating' \
+	bemcontact --estar 1GPa --pressure 1Pa --coating-young 1GPa
+fails "steps of load that no table shows" 2 '\--sweep requires --table' bemcontact --estar 1GPa --pressure 1Pa --sweep 3
 fails "a coating on a free surface" 2 'requires --boundary periodic' \
 	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
 fails "a coating of no material" 2 'requires --young and --coating-young' \

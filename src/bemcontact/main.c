@@ -70,6 +70,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
 	if (isnan(press.estar))
 		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
+	opt_require("coating", "coating-young coating-poisson");
+	opt_require("table", "sweep");
 	if (coating.thickness > 0)
 		set_coating();
 	slip_check();
