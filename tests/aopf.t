@@ -396,8 +396,11 @@ at_most "the error of the state then" \
 is "the order is 1 then" "$(column order out | tail -1)" 1
 # Wear that began beyond its threshold would never end with the direction of the first value.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 12; t++) print t "\t" 5 + t / 10 }' >passed.tsv
-fails "a threshold that had been passed before" 3 "move away from the threshold: with --direction up" \
+fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: with --direction up" \
 	aopf -y 3 --lives-only passed.tsv
+awk '{ $2 = $2 == "y" ? "y" : 8 - $2 } 1' OFS="\t" passed.tsv >receding.tsv
+fails "values that recede with the direction given" 3 "recede from the threshold, and no life ends" \
+	aopf -y 5 --direction up --lives-only receding.tsv
 ok "a direction that is given is right" aopf -y 3 --direction up --lives-only passed.tsv
 # counter WIDTH LEAST SPREAD: a counter of this width, which advances by LEAST to LEAST + SPREAD
 counter() {
