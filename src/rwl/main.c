@@ -315,14 +315,14 @@ static int check_state(
 	char *more;
 
 	if (s->alternating > 0)
-		status = doubt(out, "every other value lies on a course of its own",
+		status = doubt(out, "the values lie on two courses by turns",
 			", as those of two machines do");
 	if (forecast_stuck(f))
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
 	if (rule == RATE_MEAN && forecast_repaired(f))
-		return doubt(out, "the gap falls at once",
-			", as after a repair, and --wear-rate mean takes this for wear: "
+		return doubt(out, "the gap falls behind its rate",
+			", as after a repair or a halt, and --wear-rate mean takes this for wear: "
 			"--wear-rate filter does not");
 	if (rule == RATE_FILTER || !(fabs(trend) > TREND))
 		return status;
@@ -377,6 +377,7 @@ int main(int argc, char **argv)
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
 	e = draw_paths(p);
+	state_check();
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
 		write_rates(e, cmd);

@@ -189,7 +189,7 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 
 int forecast_repaired(const struct forecast *f)
 {
-	return f->bank && bank_repaired(f->bank);
+	return observed_falls(&f->observed) || (f->bank && bank_repaired(f->bank));
 }
 
 int forecast_stuck(const struct forecast *f)

@@ -59,7 +59,8 @@ enum num_status forecast_add(
 /* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 
-/* 1 if the gap has fallen at once, and stayed there: a repair. */
+/* 1 if the gap has fallen at once, and stayed there, or fallen behind its rate: a repair.
+ */
 int forecast_repaired(const struct forecast *f);
 /* 1 if the last values are equal because the sensor is frozen, see bank.h. */
 int forecast_stuck(const struct forecast *f);
