@@ -82,6 +82,7 @@ is "the record states that it did not converge" "$(key converged poor.nrrd)" no
 is "without load there is no pressure and no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
 fails "layers of raw heights" 2 "raw 32x24x2: want NXxNY$" bemcontact --raw 32x24x2 --pixel 1um h.f64
+fails "a tolerance that is none" 2 'tolerance 0.5: want .* to 0.1' bemcontact --estar 1GPa --pressure 1Pa --tolerance 0.5
 fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
