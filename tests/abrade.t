@@ -115,6 +115,13 @@ is "what is no single particle by its verdict is left out and reported" \
 is "doubtful particles are taken in" \
 	"$(abrade --gap 9um --hardness 2GPa --friction 0.1 --doubtful duet.tsv 2>err | column diameter /dev/stdin | tr '\n' ' ')" "1e-05 1.2e-05 "
 printf 'diameter\trealisation\n1e-5\t7\n' >seventh.tsv
+cat two.tsv two.tsv >twice.tsv
+fails "two ensembles with the same numbers" 1 'realisation 0 stands in two parts' \
+	abrade --gap 15um --hardness 2GPa --friction 0 twice.tsv
+sed 's/^\([01]\)\t/2\1\t/' two.tsv >other.tsv
+cat two.tsv other.tsv >four.two
+is "two ensembles of other numbers are joined" \
+	"$(abrade --gap 15um --hardness 2GPa --friction 0 four.two | grep -vc '^[#r]')" 6
 fails "grooves of a realisation that has no surface" 3 '1 grooves are left out: h.nrrd has no record' \
 	abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --slide 1um --surface h.nrrd seventh.tsv
 abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --surface h.nrrd p.tsv >worn.nrrd 2>err

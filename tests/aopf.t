@@ -304,7 +304,7 @@ fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
 fails "a column of units that is missing" 1 "no column 'unit'" aopf --unit unit exp.tsv
 
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
-fails 'values that overflow are accepted, but alternate' 3 'every other value' aopf -y 5 --lives-only enormous.tsv
+ok 'values that overflow are accepted' aopf -y 5 --lives-only enormous.tsv
 aopf -y 5 --lives-only enormous.tsv >out 2>err
 awk '$1 == 28' out >last
 awk 'NR == 1 || $2 < 0' enormous.tsv | aopf -y 5 --lives-only | awk '$1 == 28' >want
@@ -327,14 +327,28 @@ ok "while rows are held back the end may be near" awk '!/^#/ && $1 == 82 { exit 
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 80; t++) print t "\t" int(t / 16) / 6 }' | aopf -y 1 --lives-only >out
 ok "coarse readings of an end at 96 hold it" awk '!/^#/ && $1 == 79 { exit !(3 < $3 && $3 < 17 && 17 < $5) }' out
 
+# steps LAST: readings that move every 30 rows, but not after row LAST
+steps() {
+	awk -v last="$1" 'BEGIN { print "t\ty"; for (t = 0; t < 141; t++)
+		print t "\t" int((t < last ? t : last) / 30) / 8 }'
+}
+steps 200 >steps.tsv
+is "readings that are equal as often as before do not stick" "$(aopf -y 1 --lives-only steps.tsv 2>&1 >out)" ""
+steps 30 >stuck.tsv
+fails "those that are equal much longer do" 3 "the sensor sticks" aopf -y 1 --lives-only stuck.tsv
+
 # mixed MANY: the readings of MANY machines in turn, as one series
 mixed() {
 	awk -v many="$1" 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
 		print t "\t" t / 200 * (1 + t % many) + 0.02 * (rand() - 0.5) }'
 }
 mixed 2 >mixed.tsv
-fails "two machines in one series" 3 "every other value before .* on a course of its own: values of two machines" \
+# and of two in random order
+awk 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
+	print t "\t" t / 200 * (1 + (rand() < 0.4)) + 0.02 * (rand() - 0.5) }' >random.tsv
+fails "two machines in one series" 3 "rows and those before them lie on two courses by turns: values of two machines" \
 	aopf -y 1 --lives-only mixed.tsv
+fails "two machines in random order" 3 "lie on two courses by turns" aopf -y 1 --lives-only random.tsv
 ok "one machine" sh -c "aopf -y 1 --lives-only 2>err >out <<-END && ! grep . err
 $(mixed 1)
 END"
@@ -382,8 +396,11 @@ at_most "the error of the state then" \
 is "the order is 1 then" "$(column order out | tail -1)" 1
 # Wear that began beyond its threshold would never end with the direction of the first value.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 12; t++) print t "\t" 5 + t / 10 }' >passed.tsv
-fails "a threshold that had been passed before" 3 "move away from the threshold: with --direction up" \
+fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: with --direction up" \
 	aopf -y 3 --lives-only passed.tsv
+awk '{ $2 = $2 == "y" ? "y" : 8 - $2 } 1' OFS="\t" passed.tsv >receding.tsv
+fails "values that recede with the direction given" 3 "recede from the threshold, and no life ends" \
+	aopf -y 5 --direction up --lives-only receding.tsv
 ok "a direction that is given is right" aopf -y 3 --direction up --lives-only passed.tsv
 # counter WIDTH LEAST SPREAD: a counter of this width, which advances by LEAST to LEAST + SPREAD
 counter() {
@@ -422,7 +439,7 @@ is "the start of a series is carried to the lives" "$(aopf --threshold 0.3 start
 mkdir series failing
 for name in a_1 a_2; do
 	{
-		printf '# failure threshold: 2.8 up\n# eol_interpolated: 1186\n'
+		printf '# failure threshold: 2.8 up\n# eol_interpolated: 1186\n# units: t: hours; y: flow\n'
 		rise 1000 "${name#a_}" | awk 'NR == 1 || NR % 20 == 0'
 	} >series/$name.tsv
 done

@@ -82,6 +82,7 @@ is "the record states that it did not converge" "$(key converged poor.nrrd)" no
 is "without load there is no pressure and no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
 fails "layers of raw heights" 2 "raw 32x24x2: want NXxNY$" bemcontact --raw 32x24x2 --pixel 1um h.f64
+fails "a tolerance that is none" 2 'tolerance 0.5: want .* to 0.1' bemcontact --estar 1GPa --pressure 1Pa --tolerance 0.5
 fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
@@ -137,6 +138,9 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick coating behaves like a half-space" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "the record of a coated body has no contact modulus" "$(key estar thick.nrrd)" nan
+fails "the material of no coating" 2 '\--coating-young requires --coating' \
+	bemcontact --estar 1GPa --pressure 1Pa --coating-young 1GPa
+fails "steps of load that no table shows" 2 '\--sweep requires --table' bemcontact --estar 1GPa --pressure 1Pa --sweep 3
 fails "a coating on a free surface" 2 'requires --boundary periodic' \
 	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
 fails "a coating of no material" 2 'requires --young and --coating-young' \

@@ -94,6 +94,19 @@ is 'a ball that yields loses one particle' "$(cut -d ' ' -f 1,2 one)" '1 1'
 near 'its volume is that of the full model but for what balls differ from rough surfaces' \
 	"$(awk '{ print $4 / $3 }' one)" 1 0.25
 
+# Cells three times as long as wide: the depths below them are those of the full model.
+# Both surfaces lose fewer than 250 columns, all of which are measured.
+for cells in 32x96 96x32; do
+	roughgen --points $cells --length 0.25mmx0.25mm --sq 0.3um --corr 40um --crown 8um --seed 3 --first 1 --count 2 |
+		bemcontact --load 5N --young 210GPa >oblong.nrrd
+	debrisgen --yield 500MPa --friction 0.3 --summary oblong.full oblong.nrrd >/dev/null
+	debrisgen --yield 500MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --summary oblong.quick \
+		oblong.nrrd >/dev/null
+	is "$cells cells: both surfaces are estimated" "$(column exact oblong.quick | tr '\n' ' ')" '0 0 '
+	near "$cells cells: their volumes are those of the full model" "$(column volume oblong.full >v
+		column volume oblong.quick | paste v - | awk '{ e = $2 / $1 - 1; e *= e; m = e > m ? e : m } END { print sqrt(m) }')" 0 6e-4
+done
+
 # Units: lengths four times as long, stresses ten times as large.
 roughgen --points 32 --length 1mm --sq 4um --corr 40um --crown auto --seed 9 --count 30 |
 	bemcontact --pressure 500MPa --young 2100GPa |

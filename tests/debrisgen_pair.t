@@ -121,7 +121,9 @@ $wear --steps 6 --counterface b.nrrd --slide 0.125mm --wears both a.nrrd 2>told 
 ok "slopes beyond the theory give a warning" grep -q "rms slope .* above 0.2, the limit .* --hardness" told
 
 fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
-fails "a slide without a counterface" 2 "require --counterface" $wear --slide 0.125mm a.nrrd
+fails "a worn counterface without a counterface" 2 '\--counter-surface requires --counterface' \
+	$wear --counter-surface worn.nrrd start.nrrd
+fails "a slide without a counterface" 2 "requires --counterface" $wear --slide 0.125mm a.nrrd
 fails "the wear of a missing second body" 2 "requires --counterface" $wear --wears both start.nrrd
 cat b.nrrd b.nrrd >two.nrrd
 cat a.nrrd a.nrrd a.nrrd >three.nrrd

@@ -182,6 +182,15 @@ near "life is proportional to the depth" "$(row life 2 | awk '{ print $1 * 1e6 }
 sed 1d slid1.tsv >unknown.tsv
 debrisstat --compare slid2.tsv unknown.tsv >against.tsv
 is "without an area there is no life" "$(row life 2) $(row life 4)" "nan nan"
+printf 'realisation\tstep\tvolume\tdiameter\taspect\n0\t1\t1e-15\t1e-5\t1\n' >first.tsv
+fails "steps after the last of the table" 1 'first.tsv has no step after 1: .* specify --summary' \
+	debrisstat --step 1:2 first.tsv
+printf 'realisation\tstep\n0\t1\n0\t2\n' >both.tsv
+is "a step that shed nothing counts if the summary has it" \
+	"$(debrisstat --step 1:2 --summary both.tsv first.tsv | awk '$1 == "volume_per_step" { print $2 }')" 5e-16
+fails "steps after the last of the summary" 1 'first.tsv has no step after 2$' \
+	debrisstat --step 3 --summary both.tsv first.tsv
+fails "a truncation without limits" 2 '\--truncated requires --diameter' debrisstat --truncated first.tsv
 fails "a depth without a comparison" 2 'depth requires --compare' debrisstat --depth 1um one.tsv
 debrisstat --compare one.tsv one.tsv >against.tsv
 is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"

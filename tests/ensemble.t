@@ -5,7 +5,7 @@
 
 ensemble=$top/scripts/ensemble
 surfaces='roughgen --points 16 --length 10um --sq 0.1um --corr 3um'
-rest='bemcontact --pressure 50MPa --young 210GPa | debrisgen --yield 355MPa --friction 0.3 2>/dev/null'
+rest='bemcontact --pressure 50MPa --young 210GPa --boundary periodic | debrisgen --yield 355MPa --friction 0.3 2>/dev/null'
 eval "$surfaces --count 6 | $rest" >whole
 eval "$surfaces --count 6" >whole.nrrd
 one="$surfaces --first \$K | $rest"

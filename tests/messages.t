@@ -84,7 +84,14 @@ doubted "noise of some volts" '--noise 5 V: .* is 5mV meant?' loud
 doubted "a leakage of cubic metres" '--threshold-leakage 2.8 m3/s: is 2.8L/min meant?' flood
 doubted "a gap of a metre" '--gap 1 m: is 1um meant?' abyss
 doubted "a pressure of some pascals" '--pressure 21 Pa hardly presses: is 21MPa meant?' light
-doubted "a pressure beyond elasticity" 'mean pressure of 50 GPa is above a tenth of the contact modulus of 115 GPa' crushed
+beyond='where the bodies touch, .* GPa, is above a tenth of the contact modulus of 115 GPa'
+doubted "a pressure beyond elasticity" "$beyond: .* --hardness" crushed
+# 0.4 E* times the rms slope, of 0.6 and 0.06
+rough() { roughgen --points 64 --length 1mm --corr 50um --crown auto --sq "$1" 2>/dev/null |
+	bemcontact --young 210GPa --pressure 10MPa; }
+jagged() { rough 20um; }
+doubted "slopes beyond elasticity" "$beyond" jagged
+is "small slopes give no warning" "$(rough 2um 2>&1 >/dev/null)" ""
 doubted "heights of a metre" 'heights of 1 m exceed the correlation length of 3e-06 m' steep
 doubted "a yield stress beyond that of any solid" '--yield 3.55e+11 Pa is stronger than any solid' hard
 doubted "a friction coefficient in per cent without the sign" '--friction 30: is 30% meant?' sticky

@@ -141,6 +141,10 @@ rwl --threshold-volume 1e-9m3 --wear-rate last bronze.tsv >bronze.life 2>bronze.
 is "without the material the life is doubtful" "$? $(grep -c '2 rows are non-ferrous' bronze.err) $(grep -c '^# doubtful: the diameters' bronze.life)" "3 1 1"
 printf 'time1\tdiameter\tverdict\n1\t1e-4\talone\n2\t1e-4\tmisfit\n3\t1e-4\talone\n4\t1e-4\tmisfit\n' >doubts.tsv
 head -n 4 doubts.tsv >doubt.tsv
+fails "a material where no particles are read" 2 '--non-ferrous requires a state of --quantity debris' \
+	rwl --new --wear even.tsv --step-time 1h --non-ferrous bronze
+fails "doubtful rows of a gap" 2 '--doubtful requires a state of --quantity debris' \
+	rwl --threshold-gap 15um --doubtful gap.tsv
 printf 'volume\n1.1e-15\n1.4e-15\n' >frag.tsv
 rwl --threshold-volume 1e-10m3 --wear frag.tsv --fragment-area 1e-8m2 --calibrate doubts.tsv --quantity debris \
 	--stats s doubt.tsv >out 2>err
@@ -296,14 +300,19 @@ awk 'BEGIN { srand(5); print "t\tgap"
 		printf "%d\t%.6g\n", 3600 * k, 13e-6 + 3e-8 * (k < 50 ? k : k - 10) + 1e-8 * (rand() - 0.5) }' >repaired.tsv
 awk '/^[0-9]/ && $1 >= 180000 { $2 += 3e-7 } { print $1 "\t" $2 }' repaired.tsv >steady.tsv
 awk '/^[0-9]/ && $1 == 180000 { $2 -= 3e-7 } { print $1 "\t" $2 }' steady.tsv >outlier.tsv
+awk '/^[0-9]/ && $1 % 14400 == 0 { print } /^t/' repaired.tsv >short.tsv
+fails "a repair in 26 rows" 3 'the gap falls behind its rate' rwl --wear-rate mean --state-error 1e-9 --threshold-gap 17um short.tsv
+ok "filters follow it" rwl --wear-rate filter --threshold-gap 17um short.tsv
+awk '/^[0-9]/ && $1 >= 180000 { $2 += 3e-7; $1 += 36000 } { print $1 "\t" $2 }' short.tsv >halt.tsv
+ok "a gap in time is no repair" rwl --wear-rate mean --threshold-gap 17um halt.tsv
 rwl --wear-rate mean --threshold-gap 17um repaired.tsv >life.tsv 2>err
 is "a repair in a mean rate: status" "$?" 3
-is "it is named" "$(grep -c 'the gap falls at once, as after a repair' err)" 1
+is "it is named" "$(grep -c 'the gap falls behind its rate, as after a repair or a halt' err)" 1
 is "in the table too" "$(grep -c '^# doubtful: the gap falls' life.tsv)" 1
 ok "filters follow a repair" rwl --wear-rate filter --threshold-gap 17um repaired.tsv
 ok "without a repair there is no doubt" rwl --wear-rate mean --threshold-gap 17um steady.tsv
 ok "a single low reading is no repair" rwl --wear-rate mean --threshold-gap 17um outlier.tsv
-fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls at once' \
+fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls behind its rate' \
 	rwl --new --wear even.tsv --threshold-gap 17um --calibrate repaired.tsv
 ok "a calibration by one that was not" rwl --new --wear even.tsv --threshold-gap 17um --calibrate steady.tsv
 
@@ -401,8 +410,10 @@ two() {
 two 0.3 1 >two.tsv
 two 1 1.5e-5 >ceiling.tsv
 two 1 1 >one.tsv
+awk '/^[0-9]/ { $2 = 3e-5 - $2 } 1' OFS="\t" one.tsv >closing.tsv
 for how in mean filter; do
-	fails "two pairs in one state, $how" 3 "every other value lies on a course of its own" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
+	fails "a gap that closes, $how" 3 "the gap closes: no life ends" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how closing.tsv
+	fails "two pairs in one state, $how" 3 "the values lie on two courses by turns" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
 	fails "a sensor at its ceiling, $how" 3 "the last values are equal: the sensor sticks" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how ceiling.tsv
 	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv
 done

@@ -224,6 +224,9 @@ near "gain drift: the rms is right" "$(cut -d' ' -f2 moments)" 0.1 0.02
 sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --phase-drift 5deg --drift-time 5s \
 	--truth phases.tsv >/dev/null
 near "phase drift: the rms is right" "$(column phase phases.tsv | awk '{ q += $1 * $1 } END { print sqrt(q / NR) }')" 0.0873 0.011
+fails "the exponent of a profile that has none" 2 '\--exponent requires --profile turbulent' \
+	sensorsim --profile laminar --exponent 8 one.tsv
+fails "a mains frequency without mains" 2 '\--mains-frequency requires --mains' sensorsim --mains-frequency 60Hz one.tsv
 fails "events without an end" 2 'require --duration' sensorsim --bubbles 1 one.tsv
 
 # what it refuses

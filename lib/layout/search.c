@@ -20,10 +20,23 @@ static double predicted_variance(const struct layout_par *par, const double *coi
 	       (pow(at - mean, 2) - pow(coil[0] - mean, 2)) * slowness * slowness;
 }
 
+/* The windows at the coils of a layout, s.  Other particles are in at least one of them
+ * during their union, which is between the widest of them and their sum. */
+struct windows {
+	double sum, widest;
+};
+
+static void search_window(struct windows *w, double width)
+{
+	w->sum += width;
+	w->widest = fmax(w->widest, width);
+}
+
 void layout_evaluate(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out)
 {
-	double window = traffic_window(&par->traffic), first = 0, width = 0, single;
+	double window = traffic_window(&par->traffic), single;
+	struct windows first = { 0, 0 }, width = { 0, 0 };
 	struct bound b;
 	int next;
 
@@ -42,12 +55,14 @@ void layout_evaluate(
 			 sqrt(predicted_variance(par, coil, next, &b, coil[next]) +
 				 single);
 		all = (coil[next] - coil[k]) * window + 2 * deviations * sqrt(2 * single);
-		first += k == 0 ? all : fmin(all, narrow);
-		width += fmin(all, narrow);
+		search_window(&first, k == 0 ? all : fmin(all, narrow));
+		search_window(&width, fmin(all, narrow));
 	}
 	bound_closed(&par->bound, coil, coils, &out->bound);
-	out->unique = traffic_unique(&par->traffic, first);
-	out->by_width = traffic_unique(&par->traffic, width);
+	out->unique = traffic_unique(&par->traffic, first.sum);
+	out->by_width = traffic_unique(&par->traffic, width.sum);
+	out->unique_high = traffic_unique(&par->traffic, first.widest);
+	out->by_width_high = traffic_unique(&par->traffic, width.widest);
 }
 
 /* One search. */

@@ -26,9 +26,11 @@ struct layout_par {
 
 struct layout {
 	struct bound bound; /* closed form */
-	double unique;      /* probability of an unambiguous match */
-	double by_width;    /* the same if the width of the first pulse is used */
-	long evaluated;     /* number of layouts evaluated */
+	/* Bounds of the probability of an unambiguous match, equal for two positions. */
+	double unique, unique_high;
+	/* The same if the width of the first pulse is used. */
+	double by_width, by_width_high;
+	long evaluated; /* number of layouts evaluated */
 };
 
 enum { LAYOUT_COILS = 16 };

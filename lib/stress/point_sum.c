@@ -14,10 +14,11 @@ enum {
 	 * 8 and 16 (least of 15 runs, 128 x 128 to 1536 x 1536 cells), and volumes of 88
 	 * surfaces have rms errors of 1.75 and 1.73 %. */
 	TILE_SIDE = 4 * BLOCK,
-	AROUND = 7, /* elements are at most so many cells away along either axis */
-	OFFSETS = (2 * AROUND + 1) * (2 * AROUND + 1),
-	SHALLOW = 8 /* depths at which cells nearby act as elements, and loads far away in
-		     * proportion to the depth */
+	/* Depths at which cells nearby act as elements, and loads far away in proportion
+	 * to the depth: SHALLOW where cells are square, one more for each doubling of
+	 * their longer side. */
+	SHALLOW = 8,
+	MOST_SHALLOW = SHALLOW + 8
 };
 /* Sides of a square: ones farther away, over the surface or in half the depth, act as
  * points.  Right below it a square must be farther than beside it, since the spread of
@@ -36,15 +37,16 @@ static const double TILE_FAR = 1, DEEP_FAR = 2;
  * 2 thousandths (nine in ten) those by careful sums are by .6, .3 and .2 thousandths with
  * 3, 4 and 6. */
 static const double CAREFUL_FAR = 6;
-/* Cells: farther elements act as points, which are off by more and cost more.  Of 160
- * rough surfaces what the sums have in common is off by .43 and .37 thousandths of the
- * mean pressure (nine in ten) with 6 and 8, in 2 % less time. */
+/* Longer sides of a cell: farther elements act as points, which are off by more and cost
+ * more.  Of 160 rough surfaces what the sums have in common is off by .43 and .37
+ * thousandths of the mean pressure (nine in ten) with 6 and 8, in 2 % less time. */
 static const double NEAR = 8;
 /* Loads at more than so many times a depth act in proportion to it.  The volume of 19005
  * particles of 1536 x 1536 cells differs by .06, .025 and .014 % with 6, 8 and 12 from
  * that with 20. */
 static const double FLAT = 8;
-/* First depth, in cells; each is sqrt(2) times the one before, as those of wear.c. */
+/* First depth, in shorter sides of a cell; each is sqrt(2) times the one before, as those
+ * of wear.c. */
 static const double SHALLOWEST = 0.125;
 
 /* Single precision is enough beside the error of squares and points, and the surrogate
@@ -116,7 +118,7 @@ struct tile {
 	/* Those far away in the order of the depths to which they act in proportion:
 	 * eights[i] hold those that do to i depths at most, and a few beside them. */
 	struct loads *loads;
-	int eights[SHALLOW + 1];
+	int eights[MOST_SHALLOW + 1];
 	int near;
 	struct block *block;
 };
@@ -133,9 +135,9 @@ struct point {
 	float nearest;        /* the distance squared */
 	int flat_points;      /* depths to which all act in proportion */
 	/* Nearest, and one of no load where their number is odd. */
-	struct element element[OFFSETS + 1];
+	struct element *element;
 	int elements;
-	struct flat flat[SHALLOW]; /* all that acts in proportion to the depth */
+	struct flat flat[MOST_SHALLOW]; /* all that acts in proportion to the depth */
 };
 
 struct point_sum {
@@ -143,6 +145,8 @@ struct point_sum {
 	struct influence_par influence;
 	double cell;  /* the longer side, m, by which lengths are divided */
 	float dx, dy; /* sides of a cell over that */
+	double first; /* depth over that */
+	int shallow;  /* depths */
 	/* All pressures, and what turns a pressure into its load: in these, over 2 pi. */
 	double total, share;
 	const double *pressure;
@@ -162,9 +166,10 @@ struct point_sum {
 	struct block *block; /* of all tiles */
 	struct far *far;     /* of the tile of which they are listed */
 	int count;           /* of them */
-	/* Stress by a cell at each depth, next to it or on it. */
-	struct effect effect[2 * SHALLOW][OFFSETS];
-	int known[2 * SHALLOW];
+	/* Elements are at most so many cells away along either axis. */
+	int around_x, around_y, offsets;
+	struct effect *effect; /* at each depth, of a cell at each offset */
+	int known[2 * MOST_SHALLOW];
 	struct point point;
 };
 
@@ -173,9 +178,9 @@ static int halves(int n)
 	return (n + 1) / 2;
 }
 
-static double depth_of(int k)
+static double depth_of(const struct point_sum *s, int k)
 {
-	return (k % 2 ? SHALLOWEST * M_SQRT2 : SHALLOWEST) * (double)(1LL << k / 2);
+	return (k % 2 ? s->first * M_SQRT2 : s->first) * (double)(1LL << k / 2);
 }
 
 /* Two depths share what is summed from squares, and how. */
@@ -227,6 +232,18 @@ static int new_tiles(struct point_sum *s)
 	return 1;
 }
 
+/* Memory for the elements and what they do. */
+static int new_elements(struct point_sum *s)
+{
+	s->around_x = lesser_int((int)ceil(NEAR / s->dx), s->par.nx) - 1;
+	s->around_y = lesser_int((int)ceil(NEAR / s->dy), s->par.ny) - 1;
+	s->offsets = (2 * s->around_x + 1) * (2 * s->around_y + 1);
+	s->effect = aligned_alloc(sizeof *s->effect,
+		2 * (size_t)s->shallow * (size_t)s->offsets * sizeof *s->effect);
+	s->point.element = malloc(((size_t)s->offsets + 1) * sizeof *s->point.element);
+	return s->effect && s->point.element;
+}
+
 struct point_sum *point_sum_new(const struct stress_par *par)
 {
 	struct point_sum *s = calloc(1, sizeof *s);
@@ -244,6 +261,9 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 	s->cell = fmax(par->dx, par->dy);
 	s->dx = (float)(par->dx / s->cell);
 	s->dy = (float)(par->dy / s->cell);
+	s->first = SHALLOWEST * fmin(par->dx, par->dy) / s->cell;
+	s->shallow = lesser_int(
+		SHALLOW + (int)ceil(log2(SHALLOWEST / s->first)), MOST_SHALLOW);
 	s->nx = (par->nx + BLOCK - 1) / BLOCK;
 	s->ny = (par->ny + BLOCK - 1) / BLOCK;
 	for (int nx = s->nx, ny = s->ny, last = 0; !last; s->sizes++) {
@@ -260,7 +280,7 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 	s->begin = calloc(blocks + 1, sizeof *s->begin);
 	/* Few cells of a large grid are loaded: most of this is never touched. */
 	s->loaded = malloc((size_t)par->nx * (size_t)par->ny * sizeof *s->loaded);
-	if (!next || !s->begin || !s->loaded || !new_tiles(s)) {
+	if (!next || !s->begin || !s->loaded || !new_tiles(s) || !new_elements(s)) {
 		point_sum_free(s);
 		return NULL;
 	}
@@ -282,13 +302,15 @@ void point_sum_free(struct point_sum *s)
 	free(s->loads);
 	free(s->far);
 	free(s->point.points);
+	free(s->point.element);
+	free(s->effect);
 	free(s->block);
 	free(s);
 }
 
 double point_sum_depth(const struct point_sum *s, int k)
 {
-	return k < 0 ? 0 : s->cell * depth_of(k);
+	return k < 0 ? 0 : s->cell * depth_of(s, k);
 }
 
 int point_sum_above(const struct point_sum *s, double z)
@@ -514,9 +536,14 @@ static int eights_of(int loads)
 	return (loads + EIGHT - 1) / EIGHT;
 }
 
-static int offset(int i, int j)
+static int offset(const struct point_sum *s, int i, int j)
 {
-	return (AROUND + j) * (2 * AROUND + 1) + AROUND + i;
+	return (s->around_y + j) * (2 * s->around_x + 1) + s->around_x + i;
+}
+
+static struct effect *effects_of(struct point_sum *s, int depth)
+{
+	return s->effect + (size_t)depth * (size_t)s->offsets;
 }
 
 /* Of all cells at i, j or mirrored, at a depth. */
@@ -529,7 +556,8 @@ static void know_effect(struct point_sum *s, int i, int j, int depth)
 
 	for (int m = 0; m < 4; m++) {
 		int mx = m & 1, my = m >> 1;
-		eight *to = &s->effect[depth][offset(mx ? -i : i, my ? -j : j)].number;
+		eight *to =
+			&effects_of(s, depth)[offset(s, mx ? -i : i, my ? -j : j)].number;
 
 		for (int c = 0; c < STRESS_DEVIATOR; c++)
 			(*to)[c] = (float)(unit * influence_image(&s->influence, &f,
@@ -540,11 +568,11 @@ static void know_effect(struct point_sum *s, int i, int j, int depth)
 
 static const struct effect *effects_at(struct point_sum *s, int depth)
 {
-	for (int j = 0; j <= AROUND && !s->known[depth]; j++)
-		for (int i = 0; i <= AROUND; i++)
+	for (int j = 0; j <= s->around_y && !s->known[depth]; j++)
+		for (int i = 0; i <= s->around_x; i++)
 			know_effect(s, i, j, depth);
 	s->known[depth] = 1;
-	return s->effect[depth];
+	return effects_of(s, depth);
 }
 
 static void list_near(
@@ -572,10 +600,11 @@ static void list_block(const struct point_sum *s, struct point *at, const struct
 	for (size_t n = s->begin[b->at]; n < s->begin[b->at + 1]; n++) {
 		const struct cell *c = &s->loaded[n];
 		int i = at->ix - c->x, j = at->iy - c->y;
+		float x = (float)i * s->dx, y = (float)j * s->dy;
 
-		if (!at->deep && (float)(i * i + j * j) < near * near)
+		if (!at->deep && x * x + y * y < near * near)
 			at->element[at->elements++] =
-				(struct element){ offset(i, j), c->load };
+				(struct element){ offset(s, i, j), c->load };
 		else
 			list_near(
 				s, at, c->load, centre(c->x, s->dx), centre(c->y, s->dy));
@@ -597,9 +626,9 @@ static inline four beyond(four away, float half)
 static inline four_bits flat_depths(const struct point_sum *s, four square)
 {
 	four_bits k = { 0 };
-	float z = (float)(FLAT * SHALLOWEST);
+	float z = (float)(FLAT * s->first);
 
-	for (int i = 0; i < SHALLOW && !s->careful; i++, z *= 2)
+	for (int i = 0; i < s->shallow && !s->careful; i++, z *= 2)
 		k -= square >= z * z;
 	return k;
 }
@@ -634,16 +663,16 @@ static void list_squares(struct point_sum *s, struct tile *t, int l, int x, int 
 /* Puts what is far away from a tile in order. */
 static void sort_far(const struct point_sum *s, struct tile *t)
 {
-	int place[SHALLOW + 2] = { 0 };
+	int place[MOST_SHALLOW + 2] = { 0 };
 
 	for (int i = 0; i < s->count; i++)
 		place[s->far[i].flat + 1]++;
-	for (int k = 0; k <= SHALLOW; k++) {
+	for (int k = 0; k <= s->shallow; k++) {
 		place[k + 1] += place[k];
 		t->eights[k] = eights_of(place[k + 1]);
 	}
 	if (s->count > 0)
-		clear_eight(&t->loads[t->eights[SHALLOW] - 1]);
+		clear_eight(&t->loads[t->eights[s->shallow] - 1]);
 	for (const struct far *f = s->far; f < s->far + s->count; f++)
 		put_load(s, t->loads, place[f->flat]++, f->load, f->x, f->y);
 }
@@ -689,7 +718,7 @@ LANES_CLONES static void find_flat(const struct point_sum *s, struct point *at)
 	const int *eights = at->tile->eights;
 	struct flat flat = { .xx = { 0 } };
 
-	for (int i = SHALLOW; i > 0; i--) {
+	for (int i = s->shallow; i > 0; i--) {
 		struct flat *to = &at->flat[i - 1];
 
 		add_flat(
@@ -745,11 +774,12 @@ LANES_CLONES static void sum_point(const struct point_sum *s, const struct effec
 	const struct tile *tile = at->tile;
 	struct sums t = { .xx = { 0 } };
 	eight e = { 0 }, other = { 0 };
-	float z = (float)depth_of(k);
+	float z = (float)depth_of(s, k);
 	int level = level_of(k);
 
-	add_points(s, tile->loads, tile->loads + tile->eights[lesser_int(level, SHALLOW)],
-		at->u, at->v, z, &t);
+	add_points(s, tile->loads,
+		tile->loads + tile->eights[lesser_int(level, s->shallow)], at->u, at->v,
+		z, &t);
 	if (at->deep || level >= at->flat_points)
 		add_points(s, at->points, at->points + eights_of(at->count), 0, 0, z, &t);
 	if (!at->deep) {
@@ -789,7 +819,7 @@ double point_sum_at(struct point_sum *s, int ix, int iy, int k)
 		s->par.criterion ? s->par.criterion : &stress_von_mises_criterion;
 	double number[STRESS_DEVIATOR];
 	float sum[EIGHT];
-	int deep = level_of(k) >= SHALLOW;
+	int deep = level_of(k) >= s->shallow;
 
 	if (s->point.ix != ix || s->point.iy != iy || s->point.deep != deep)
 		find_point(s, ix, iy, deep);

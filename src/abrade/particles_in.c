@@ -28,7 +28,7 @@ struct opt particles_rows[] = {
 };
 
 struct row {
-	long realisation;
+	long realisation, part;
 	size_t number;
 	double diameter, aspect;
 };
@@ -100,6 +100,19 @@ static int in_order(const void *a, const void *b)
 	return x->number < y->number ? -1 : x->number > y->number;
 }
 
+/* Two ensembles of the same numbers are no ensemble: their particles would share a gap.
+ */
+static void check_parts(const struct source *s, const char *name)
+{
+	for (size_t i = 1; i < s->rows; i++)
+		if (s->row[i].realisation == s->row[i - 1].realisation &&
+			s->row[i].part != s->row[i - 1].part)
+			die(EXIT_RUN,
+				"%s: realisation %ld stands in two parts of the table; "
+				"the numbers of joined ensembles must differ",
+				name, s->row[i].realisation);
+}
+
 struct source *particles_read(const char *path)
 {
 	struct source *s = xcalloc(1, sizeof *s);
@@ -125,14 +138,17 @@ struct source *particles_read(const char *path)
 				table_name(t), table_line(t), r.aspect);
 		if (cr >= 0)
 			r.realisation = table_whole(t, cr, 0, 1e15);
+		r.part = table_part(t);
 		s->row[s->rows++] = r;
 	}
 	s->apart = cr >= 0;
 	s->shaped = ca >= 0;
 	if (table_upstream(t))
 		s->upstream = xstrdup(table_upstream(t));
-	table_close(t);
 	qsort(s->row, s->rows, sizeof *s->row, in_order);
+	if (cr >= 0)
+		check_parts(s, table_name(t));
+	table_close(t);
 	s->diameter = xcalloc(s->rows + 1, sizeof *s->diameter);
 	s->aspect = xcalloc(s->rows + 1, sizeof *s->aspect);
 	return s;

@@ -133,9 +133,7 @@ struct outlook {
 		long beyond;  /* successive values past the threshold */
 		long healthy; /* values short of it */
 		int failed, alarm;
-		int never;             /* the last life is infinite with certainty */
-		double origin, newest; /* the first value and the last */
-		long alternating;      /* values of two courses */
+		long alternating; /* values of two courses */
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
@@ -432,7 +430,6 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 	while (ends > 0 && isinf(life[ends - 1]))
 		ends--;
 	*cell++ = (double)(n - ends) / n;
-	o->now.never = ends == 0;
 	while (failures < n && life[failures] <= mission / timeunit())
 		failures++;
 	if (!isnan(mission))
@@ -512,15 +509,12 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 
 		now->started = 1;
 		now->direction = up ? 1 : -1;
-		now->origin = in->y;
 		start(o);
 	}
 	if (now->started)
 		learn(o, in, filtered);
 	now->rows++;
 	now->last = in->t;
-	if (!isnan(in->y))
-		now->newest = in->y;
 	if (!isnan(in->y))
 		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
 				      ? now->beyond + 1
@@ -551,15 +545,18 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 }
 
 /* Says so if the first values may have told the wrong direction, because one or two were
- * bad or the threshold had been passed before. */
+ * bad or the threshold had been passed before, and if the trends recede. */
 static int check_direction(const struct outlook *o, const char *unit)
 {
-	if (direction == AUTO && o->now.never &&
-		o->now.direction * (o->now.newest - o->now.origin) < 0) {
-		warn("%s%sthe values move away from the threshold: with --direction %s it "
-		     "had been passed before",
+	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
+
+	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
+		warn("%s%sthe values recede from the threshold, and no life ends%s%s%s",
 			unit, *unit ? ": " : "",
-			directions[o->now.direction > 0 ? DOWN : UP]);
+			direction == AUTO ? ": with --direction " : "",
+			direction == AUTO ? directions[o->now.direction > 0 ? DOWN : UP]
+					  : "",
+			direction == AUTO ? " it had been passed before" : "");
 		return 1;
 	}
 	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
@@ -587,7 +584,7 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		     "may have changed, or a counter has wrapped",
 			unit, *unit ? ": " : "");
 	if (o->now.alternating > 0)
-		warn("%s%severy other value before %ld of them lies on a course of its own: "
+		warn("%s%s%ld rows and those before them lie on two courses by turns: "
 		     "values of two machines are told apart by --unit",
 			unit, *unit ? ": " : "", o->now.alternating);
 	if (stuck)

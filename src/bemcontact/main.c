@@ -70,6 +70,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
 	if (isnan(press.estar))
 		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
+	opt_require("coating", "coating-young coating-poisson");
+	opt_require("table", "sweep");
 	if (coating.thickness > 0)
 		set_coating();
 	slip_check();
@@ -267,20 +269,22 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 /* Warns once of values that are possible but unlikely to be meant.  A number below 1000
  * without its unit may be one of MPa, up to 1 GPa; 1 kPa is the weight of 13 mm of steel.
  * The ideal strength of solids is about a tenth of their modulus. */
-static void doubt(const struct contact_par *par, double pressure)
+static void doubt(const struct contact_par *par, const struct contact_result *found)
 {
+	double touching = found->pressure / found->area;
 	static int said;
 
-	if (said || !(pressure > 0))
+	if (said || !(found->pressure > 0))
 		return;
 	said = 1;
-	if (pressure < 1e3 && !isnan(press.pressure))
+	if (found->pressure < 1e3 && !isnan(press.pressure))
 		warn("--pressure %g Pa hardly presses: is %gMPa meant?", press.pressure,
 			press.pressure);
-	else if (pressure > 0.1 * par->estar)
-		warn("the mean pressure of %.3g GPa is above a tenth of the contact "
-		     "modulus of %.3g GPa: no solid is elastic there",
-			1e-9 * pressure, 1e-9 * par->estar);
+	else if (touching > 0.1 * par->estar)
+		warn("the mean pressure where the bodies touch, %.3g GPa, is above a tenth "
+		     "of the contact modulus of %.3g GPa: no solid is elastic there%s",
+			1e-9 * touching, 1e-9 * par->estar,
+			par->hardness > 0 ? "" : ", specify --hardness");
 	else
 		said = 0;
 }
@@ -334,7 +338,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
-	doubt(&t.par, found.pressure);
+	doubt(&t.par, &found);
 	free(own_gap);
 	free(t.other);
 	return converged;

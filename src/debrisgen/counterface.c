@@ -35,8 +35,7 @@ struct counterface {
 
 int counterface_check(void)
 {
-	if (!path && (!isnan(slide) || renew))
-		die(EXIT_USAGE, "--slide and --renew require --counterface");
+	opt_require("counterface", "slide renew counter-surface");
 	return path != NULL;
 }
 

@@ -13,6 +13,8 @@
 /* Share of the load on the outermost cells that is worth a warning: what they carry in
  * full contact of 80 x 80 cells. */
 static const double EDGE_LOAD = 0.05;
+/* From half of the load on, the contact is mostly with what the grid has cut off. */
+static const double EDGE_MOST = 0.5;
 
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
@@ -224,11 +226,13 @@ static void wear_record(struct run *run, struct record *r)
 	}
 }
 
-static void warn_of_edge(const struct run *run)
+static void warn_of_edge(struct run *run)
 {
 	const struct edge *e = &run->edge;
 
 	stats_add("edge_load_steps", (double)e->steps);
+	if (e->most > EDGE_MOST)
+		run->status = EXIT_NOCONV;
 	if (e->steps)
 		warn("%s: %ld steps with more than 5 %% of the load on the outermost "
 		     "cells, worst %.0f %% (realisation %ld, step %ld): use a larger area, "

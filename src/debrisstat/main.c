@@ -139,6 +139,7 @@ static void classify(const struct particle_row *s, double aspect)
 
 /* The summary of debrisgen for the particles, row by row. */
 struct summary {
+	long last;              /* step */
 	struct table_in *table; /* NULL: none */
 	int realisation, step;  /* columns */
 	long at;                /* realisation of the present row */
@@ -166,9 +167,12 @@ static void open_summary(struct summary *s)
 /* Reads up to a realisation: the rows of both tables reach the ensemble together. */
 static void read_summary(struct summary *s, struct ensemble *e, long realisation)
 {
-	for (; s->more && s->at <= realisation; next_summary(s))
-		check(e, ensemble_took_place(
-				 e, s->at, table_whole(s->table, s->step, 1, 1e6)));
+	for (; s->more && s->at <= realisation; next_summary(s)) {
+		long step = table_whole(s->table, s->step, 1, 1e6);
+
+		check(e, ensemble_took_place(e, s->at, step));
+		s->last = step > s->last ? step : s->last;
+	}
 }
 
 /* What a table states of its study; nan: nothing. */
@@ -183,6 +187,7 @@ static void read_particles(
 	struct table_in *t = table_open(path);
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
+	long last = 0;
 	struct summary summary;
 
 	cr = table_need(t, "realisation");
@@ -198,10 +203,18 @@ static void read_particles(
 
 		read_summary(&summary, e, s.realisation);
 		check(e, ensemble_add(e, &s));
+		last = s.step > last ? s.step : last;
 		/* A particle that is endless on a periodic grid has no shape. */
 		classify(&s, isnan(table_number(t, ca)) ? NAN : table_positive(t, ca));
 	}
 	read_summary(&summary, e, LONG_MAX);
+	last = summary.last > last ? summary.last : last;
+	/* Steps that did not take place wore nothing off, which is no result. */
+	if (range.n > 0 && range.v[range.n - 1] > (double)last)
+		die(EXIT_RUN, "--step: %s has no step after %ld%s", table_name(t), last,
+			summary.table
+				? ""
+				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
 	study->area = table_quantity(t, "nominal_area", UNIT_AREA);
@@ -448,6 +461,7 @@ static void check_options(void)
 		die(EXIT_USAGE,
 			"--compare excludes --output, --summary and --realisations");
 	opt_require("compare", "depth");
+	opt_require("diameter", "truncated");
 	if (other_path && !bootstrap)
 		bootstrap = COMPARED;
 	if (other_path && !opt_given("confidence"))

@@ -5,7 +5,7 @@
 #include "common/time_unit.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
-#include "life/trend/bank.h"
+#include "life/pair/observed.h"
 #include "num/running.h"
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static const double most[] = { INFINITY, 0.1, 1e-2, 1e-2, 0.1 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
-static int equivalent;
+static int equivalent, debris; /* 1: a table of particles has been opened */
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
@@ -87,7 +87,9 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
 	if (s->value_column < 0)
 		s->value_column = table_need(t, columns[s->quantity]);
 	s->sources_column = table_find(t, "sources");
-	s->verdict_column = verdict_column(t);
+	if (s->quantity == PAIR_DEBRIS)
+		s->verdict_column = verdict_column(t);
+	debris |= s->quantity == PAIR_DEBRIS;
 	settle_units(s);
 }
 
@@ -199,6 +201,16 @@ int state_next(struct observations *s)
 	return 1;
 }
 
+void state_check(void)
+{
+	const char *option = opt_any_given(verdict_rows);
+
+	if (!option)
+		option = opt_any_given(non_ferrous_rows);
+	if (option && !debris)
+		die(EXIT_USAGE, "--%s requires a state of --quantity debris", option);
+}
+
 int state_equivalent(void)
 {
 	return equivalent;
@@ -207,27 +219,22 @@ int state_equivalent(void)
 double state_slope(const char *file, const struct pair *pair, double skip)
 {
 	struct regression line = { 0 };
+	struct observed gaps = { 0 };
 	struct observations s;
 	double slope;
-	struct bank_par par = { .threshold = pair_limit(pair), .direction = 1 };
-	struct bank *bank = bank_new(&par);
 
-	if (!bank)
-		die(EXIT_RUN, "out of memory");
 	state_open(&s, file, pair);
 	while (state_next(&s)) {
 		if (isnan(s.gap) || s.t - s.first_t < skip)
 			continue;
 		regression_add(&line, s.t, s.gap);
-		if (isfinite(par.threshold) && s.quantity != PAIR_DEBRIS)
-			bank_add(bank, s.t, s.gap);
+		observed_add(&gaps, s.t, s.value, s.gap);
 	}
-	if (bank_repaired(bank))
+	if (observed_falls(&gaps))
 		die(EXIT_RUN,
-			"%s: the gap falls at once, as after a repair: no calibration by the "
+			"%s: the gap falls behind its rate, as after a repair: no calibration by the "
 			"whole life",
 			file);
-	bank_free(bank);
 	slope = regression_slope(&line);
 	if (!(slope > 0) || !isfinite(slope))
 		die(EXIT_RUN, "%s: the unit for the calibration does not wear", file);

@@ -55,6 +55,8 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
  * particle that duet calls unresolved counts as its sources. */
 int state_next(struct observations *s);
 
+/* Dies if an option of particles was given and no table of them has been opened. */
+void state_check(void);
 /* 1 if some of the particles read so far are not of their diameter. */
 int state_equivalent(void);
 

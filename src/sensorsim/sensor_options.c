@@ -114,6 +114,10 @@ void sensors_check(void)
 {
 	if (lag.n && lag.v[0] > lag.v[1])
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
+	if (opt_given("exponent") && profile != PIPE_TURBULENT)
+		die(EXIT_USAGE, "--exponent requires --profile turbulent");
+	opt_require("mains", "mains-frequency mains-wander");
+	opt_require("pump", "pump-frequency");
 	if (coil.n && opt_given("calibration"))
 		die(EXIT_USAGE, "--coil and --calibration exclude one another");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))

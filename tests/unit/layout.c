@@ -353,8 +353,8 @@ static double matched(const struct matching *m, int by_width, int particles)
 	return (double)good / particles;
 }
 
-/* The windows of several coils are taken to be independent: a particle in two of them
- * counts twice. */
+/* Of two positions the probability is known, of three between bounds: a particle in two
+ * windows counts once or twice. */
 static void check_matching(void)
 {
 	enum { PARTICLES = 40000 };
@@ -379,19 +379,22 @@ static void check_matching(void)
 	got = matched(&m, 1, PARTICLES);
 	ok(fabs(got - of.by_width) < 0.003,
 		"and by the widths of their pulses: %.4f, %.4f", got, of.by_width);
+	near(of.unique_high / of.unique, 1, 0, "both bounds are equal");
+	near(of.by_width_high / of.by_width, 1, 0, "by widths, too");
 	m.coil = three;
 	m.coils = 3;
 	layout_evaluate(&par, three, 3, &of);
 	got = matched(&m, 1, PARTICLES);
-	ok(got > of.by_width - 0.003 && got < of.by_width + 0.01,
-		"at a third coil, too: %.4f, %.4f", got, of.by_width);
+	ok(got > of.by_width - 0.003 && got < of.by_width_high + 0.003,
+		"at a third coil within the bounds: %.4f, %.4f to %.4f", got, of.by_width,
+		of.by_width_high);
 	par.traffic.arrivals = 300;
 	m.spread = par.traffic.spread = 0;
 	layout_evaluate(&par, three, 3, &of);
 	got = matched(&m, 1, PARTICLES);
-	ok(got > of.by_width + 0.005 && got < sqrt(of.by_width) + 0.003,
-		"of equal velocities those confused are so at both: %.4f, at least %.4f",
-		got, of.by_width);
+	ok(got > of.by_width + 0.005 && got < of.by_width_high + 0.003,
+		"of equal velocities those confused are so at both: %.4f, %.4f to %.4f",
+		got, of.by_width, of.by_width_high);
 }
 
 int main(void)

@@ -77,6 +77,36 @@ static void check_trend(void)
 	ok(fabs(trend_of(1000, linear)) == 0, "a constant rate has no trend");
 }
 
+static double repaired(double part)
+{
+	return part - 0.3 * (part > 0.5) + 0.02 * sin(1e4 * part);
+}
+
+static double noisy(double part)
+{
+	return part + 0.02 * sin(1e4 * part);
+}
+
+static int falls(int rows, double (*gap)(double part), double halt)
+{
+	struct observed o = { .rule = RATE_MEAN };
+
+	for (int i = 0; i < rows; i++)
+		observed_add(&o, i + (2 * i > rows ? halt : 0), 1, gap((double)i / rows));
+	return observed_falls(&o);
+}
+
+static void check_falls(void)
+{
+	ok(falls(12, repaired, 0) && falls(17, repaired, 0) && falls(200, repaired, 0),
+		"a repair is found in 12, 17 and 200 rows");
+	ok(!falls(8, repaired, 0), "not in eight");
+	ok(!falls(12, noisy, 0) && !falls(17, noisy, 0) && !falls(200, noisy, 0),
+		"noise is no repair");
+	ok(!falls(17, linear, 0) && !falls(17, linear, 30), "nor is a halt");
+	ok(!falls(17, square, 0) && !falls(17, sqrt, 0), "nor a rate that changes");
+}
+
 /* Backward sums of all values at each check, as grey.h makes them. */
 static void check_grey(const char *what, double level, double unit)
 {
@@ -114,6 +144,7 @@ int main(void)
 
 	check_rates();
 	check_trend();
+	check_falls();
 	check_grey("values of 2, hours", 2, 1);
 	check_grey("values of 1e-200, 1e-9", 1e-200, 1e-9);
 	check_grey("values of 1e200, 1e9", 1e200, 1e9);

@@ -777,6 +777,8 @@ static void test_points(double oblong)
 		oblong, all);
 	deep = sqrt(deep / count);
 	ok(deep < 0.02, "from 8 cells on they are off by %.1e of the stress (rms)", deep);
+	near(point_sum_depth(points, 0), fmin(par.dx, par.dy) / 8, 1e-15,
+		"the first depth is an eighth of the shorter side of a cell");
 	ok(point_sum_above(points, 1.3 * point_sum_depth(points, 5)) == 5 &&
 			point_sum_above(points, 0) == 0,
 		"the depth above another one is found");

@@ -60,6 +60,10 @@ double observed_rate(const struct observed *o);
  * are noisy.  Sixteen rates have at most 5.4, eight 3.5. */
 double observed_rate_trend(const struct observed *o);
 
+/* 1 if the gap falls at one moment and grows steadily before and after, as by a repair;
+ * from nine observations on. */
+int observed_falls(const struct observed *o);
+
 /* Time from the latest observation until the grey model GM(1,1) of all values since the
  * beginning reaches the threshold; INFINITY: never; NAN below four values.  The sums of
  * grey.h are kept from the oldest value on, centred, so that the cost of a row does not

@@ -379,7 +379,11 @@ static void take(struct bank *b, const struct row *r)
 			frozen += tr->weight * one;
 	}
 	b->frozen += frozen;
-	b->stuck = equal ? b->stuck + frozen : 0;
+	if (!equal) {
+		b->freed = fmax(b->freed, b->stuck);
+		b->stuck = 0;
+	}
+	b->stuck += equal ? frozen : 0;
 	if (b->par.direction * (r->y - b->farthest) > 0)
 		b->farthest = r->y;
 	b->before = r->y;
@@ -424,7 +428,7 @@ static void start(struct bank *b)
 	b->first = b->last = b->seen = r[0].t;
 	b->level = damage_of(b, r[0].y);
 	b->before = b->farthest = r[0].y;
-	b->frozen = b->stuck = b->repairs = b->healed = b->jumped = 0;
+	b->frozen = b->stuck = b->freed = b->repairs = b->healed = b->jumped = 0;
 	b->idle = b->age = b->squares = b->longest = b->bred = b->scored = 0;
 	b->gap = 1;
 	b->trends = 0;
@@ -579,7 +583,7 @@ int bank_repaired(const struct bank *b)
 
 int bank_stuck(const struct bank *b)
 {
-	return b->stuck > HELD - 1 && isfinite(b->quantum);
+	return b->stuck > fmax(HELD - 1, 2 * b->freed) && isfinite(b->quantum);
 }
 
 double chance_of_jump(const struct bank *b)

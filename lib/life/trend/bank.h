@@ -142,7 +142,8 @@ int bank_event(struct bank *b, enum bank_event event);
 int bank_repaired(const struct bank *b);
 
 /* 1 if the last eight values or more are equal because the sensor is frozen, but not all
- * values: those of a unit without wear may be. */
+ * values: those of a unit without wear may be.  Nor if half as many have been before:
+ * coarse readings of steady wear repeat as often from one step to the next. */
 int bank_stuck(const struct bank *b);
 
 /* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:

@@ -74,6 +74,7 @@ struct bank {
 	int repeats;            /* 1: successive values have been equal */
 	double frozen;          /* rows that did so by a frozen sensor, expected */
 	double stuck;           /* of them, those since a row that did not repeat */
+	double freed;           /* most of them before such a row */
 	double bred;            /* age at which particles were last drawn */
 	double repairs, healed; /* their number, and the damage that they took back */
 	double freedom[KINDS], keep[KINDS], log_constant[KINDS];

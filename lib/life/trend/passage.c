@@ -238,6 +238,22 @@ static double normal_above(double m, const struct chance *c)
 	return above < UNLIKELY ? NAN : -normal_quantile(c->u[1] * above);
 }
 
+int bank_recedes(const struct bank *b)
+{
+	double sum = 0, line[LINE];
+
+	for (int i = 0; i < b->trends; i++) {
+		const struct trend *tr = &b->trend[i];
+		double sd;
+
+		line_at(b, tr, b->at, line);
+		sd = sqrt(line[LINE_VV] * tr->sum / freedom_of(b, tr));
+		if (0.5 * erfc(-line[LINE_V] / (sd * sqrt(2))) < UNLIKELY)
+			sum += tr->weight;
+	}
+	return sum > 0.95;
+}
+
 /* Time to the passage if the regime changes once more. */
 static double change(const struct crossing *p, double time, const struct chance *c)
 {

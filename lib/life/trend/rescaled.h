@@ -4,7 +4,7 @@
  * A repair or a jump of wear shifts the level and leaves the steps between rows as they
  * were.  A change of the unit, or of the gain of a sensor, multiplies both by the same
  * factor.  A counter that wraps goes on from 0 where it would have reached a power of two
- * or ten.  Rows of two machines, or of two states of one, alternate between two courses.
+ * or ten.  Rows of two machines, or of two states of one, lie on two courses.
  */
 #ifndef LIFE_RESCALED_H
 #define LIFE_RESCALED_H
@@ -27,7 +27,7 @@ double rescaled_range(const struct rescaled *r, int n, double threshold);
  * because their steps differ from those before rather by the factor of the level than not
  * at all, or come from a counter that has wrapped. */
 int rescaled_doubtful(const struct rescaled *r, double threshold);
-/* 1 if every other one of the last 2 RESCALED_HALF values lies on a course of its own. */
+/* 1 if the last 2 RESCALED_HALF values lie on two courses and change between them. */
 int rescaled_alternates(const struct rescaled *r);
 
 #endif
