@@ -38,6 +38,8 @@ printf '2.5\t1e-5\tunclear\n' | cat bronze.tsv - >unclear.tsv
 wear-volume --non-ferrous bronze --excitation 200kHz unclear.tsv >volume.tsv 2>err
 is 'particles of unclear class are marked' "$? $(grep -c '1 rows are of unclear class' err)" "3 1"
 ok 'unless all are ferrous' wear-volume --non-ferrous ferrous unclear.tsv
+printf 'time1\tdiameter\tclass\tverdict\n0.5\t1e-5\tferrous\talone\n1.5\tnan\tunclear\tbubble\n' | wear-volume >volume.tsv 2>err
+is 'an event that is no particle has no class' "$? $(grep -c 'unclear class' err)" "0 0"
 fails 'a material where no class is known' 1 "no column 'class'" wear-volume --non-ferrous bronze um.tsv
 
 printf 'time1\tdiameter\tamplitude\tverdict\n0.5\t1e-3\t1\talone\n1.5\t1e-4\t-0.1\talone\n' >signs.tsv

@@ -45,6 +45,10 @@ enum verdict verdict_of(const struct table_in *t, int column)
 {
 	const char *word = column < 0 ? "alone" : table_text(t, column);
 
+	if (is_event(word)) {
+		foreign++;
+		return VERDICT_FOREIGN;
+	}
 	non_ferrous += is_of_class(t, "non-ferrous");
 	unclear += is_of_class(t, "unclear");
 	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0) {
@@ -55,10 +59,6 @@ enum verdict verdict_of(const struct table_in *t, int column)
 	if (strcmp(word, "unresolved") == 0) {
 		unresolved++;
 		return VERDICT_UNRESOLVED;
-	}
-	if (is_event(word)) {
-		foreign++;
-		return VERDICT_FOREIGN;
 	}
 	doubtful++;
 	return doubtful_too ? VERDICT_SURE : VERDICT_DOUBTFUL;
