@@ -193,12 +193,12 @@ at_least "live, means of samples: the first rows come within the latency" "$(gre
 
 # A record of noise alone, 3e6 samples: 30 false alarms at 1e-5, and no more by following them;
 # Rice's formula is too small by a third at so low a level, and the number has a deviation of 6.
-sensorsim --uniform 80um:120um --number 60 --duration 20s --noise 30mV --lag 0:0.4ms --seed 33 >s.au
+sensorsim --uniform 80um:120um --number 60 --duration 20s --noise 30mV --lag 0:0.4ms --seed 33 >loud.au
 sensorsim --uniform 1um:2um --number 0 --duration 300s --noise 30mV --seed 31 >noise.au
-duet --false-alarm 1e-5 --instrument alarms-rig.tsv s.au >found.tsv
-duet --false-alarm 1e-5 --instrument alarms-rig.tsv noise.au >found.tsv 2>err
+duet --false-alarm 1e-5 --instrument alarms-rig.tsv loud.au >loud.tsv
+duet --false-alarm 1e-5 --instrument alarms-rig.tsv noise.au >alarms.tsv 2>err
 is "false alarms: the record is believed" "$?: $(cat err)" "0: "
-near "false alarms are as frequent as said" "$(column time1 found.tsv | wc -l)" 40 20
+near "false alarms are as frequent as said" "$(column time1 alarms.tsv | wc -l)" 40 20
 
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
