@@ -410,7 +410,9 @@ two() {
 two 0.3 1 >two.tsv
 two 1 1.5e-5 >ceiling.tsv
 two 1 1 >one.tsv
+awk '/^[0-9]/ { $2 = 3e-5 - $2 } 1' OFS="\t" one.tsv >closing.tsv
 for how in mean filter; do
+	fails "a gap that closes, $how" 3 "the gap closes: no life ends" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how closing.tsv
 	fails "two pairs in one state, $how" 3 "the values lie on two courses by turns" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
 	fails "a sensor at its ceiling, $how" 3 "the last values are equal: the sensor sticks" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how ceiling.tsv
 	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv

@@ -550,7 +550,7 @@ static int check_direction(const struct outlook *o, const char *unit)
 {
 	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
 
-	if (b && bank_ready(b) && !o->now.failed && bank_receding(b) > 0.95) {
+	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
 		warn("%s%sthe values recede from the threshold, and no life ends%s%s%s",
 			unit, *unit ? ": " : "",
 			direction == AUTO ? ": with --direction " : "",

@@ -5,6 +5,7 @@
 #include "common/covariates.h"
 #include "fragments.h"
 #include "life/pair/remaining.h"
+#include "life/trend/passage.h"
 #include "life_table.h"
 #include "observations.h"
 #include "pump_options.h"
@@ -310,17 +311,22 @@ static int doubt(struct lifetable *out, const char *why, const char *more)
 static int check_state(
 	const struct observations *s, const struct forecast *f, struct lifetable *out)
 {
-	double trend = forecast_rate_trend(f);
+	const struct bank *bank = forecast_bank(f);
+	const struct observed *observed = forecast_observed(f);
+	double trend = observed_rate_trend(observed);
 	int status = 0;
 	char *more;
 
 	if (s->alternating > 0)
 		status = doubt(out, "the values lie on two courses by turns",
 			", as those of two machines do");
-	if (forecast_stuck(f))
+	if (bank && bank_stuck(bank))
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
-	if (rule == RATE_MEAN && forecast_repaired(f))
+	if (bank && bank_recedes(bank))
+		status = doubt(out, "the gap closes", ": no life ends");
+	if (rule == RATE_MEAN &&
+		(observed_falls(observed) || (bank && bank_repaired(bank))))
 		return doubt(out, "the gap falls behind its rate",
 			", as after a repair or a halt, and --wear-rate mean takes this for wear: "
 			"--wear-rate filter does not");

@@ -187,17 +187,12 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 	return row;
 }
 
-int forecast_repaired(const struct forecast *f)
+const struct observed *forecast_observed(const struct forecast *f)
 {
-	return observed_falls(&f->observed) || (f->bank && bank_repaired(f->bank));
+	return &f->observed;
 }
 
-int forecast_stuck(const struct forecast *f)
+const struct bank *forecast_bank(const struct forecast *f)
 {
-	return f->bank && bank_stuck(f->bank);
-}
-
-double forecast_rate_trend(const struct forecast *f)
-{
-	return observed_rate_trend(&f->observed);
+	return f->bank && bank_ready(f->bank) ? f->bank : NULL;
 }

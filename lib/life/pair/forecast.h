@@ -59,13 +59,9 @@ enum num_status forecast_add(
 /* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 
-/* 1 if the gap has fallen at once, and stayed there, or fallen behind its rate: a repair.
- */
-int forecast_repaired(const struct forecast *f);
-/* 1 if the last values are equal because the sensor is frozen, see bank.h. */
-int forecast_stuck(const struct forecast *f);
-/* Trend of the rate of the gap (observed_rate_trend()). */
-double forecast_rate_trend(const struct forecast *f);
+/* The observations so far, and the bank that follows them; NULL: none yet. */
+const struct observed *forecast_observed(const struct forecast *f);
+const struct bank *forecast_bank(const struct forecast *f);
 
 /* The forecast at the latest known gap minus the time since then. */
 struct forecast_row forecast_at(struct forecast *f, double t);

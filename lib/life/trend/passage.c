@@ -238,7 +238,7 @@ static double normal_above(double m, const struct chance *c)
 	return above < UNLIKELY ? NAN : -normal_quantile(c->u[1] * above);
 }
 
-double bank_receding(const struct bank *b)
+int bank_recedes(const struct bank *b)
 {
 	double sum = 0, line[LINE];
 
@@ -251,7 +251,7 @@ double bank_receding(const struct bank *b)
 		if (0.5 * erfc(-line[LINE_V] / (sd * sqrt(2))) < UNLIKELY)
 			sum += tr->weight;
 	}
-	return sum;
+	return sum > 0.95;
 }
 
 /* Time to the passage if the regime changes once more. */

@@ -46,7 +46,7 @@ double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *chances,
 	double now, double level, double *life);
 
-/* Weight of the trends in which the damage does not grow, nearly certainly. */
-double bank_receding(const struct bank *b);
+/* 1 if the damage nearly certainly does not grow in trends with 95 % of the weight. */
+int bank_recedes(const struct bank *b);
 
 #endif
