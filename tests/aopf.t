@@ -396,7 +396,7 @@ at_most "the error of the state then" \
 is "the order is 1 then" "$(column order out | tail -1)" 1
 # Wear that began beyond its threshold would never end with the direction of the first value.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 12; t++) print t "\t" 5 + t / 10 }' >passed.tsv
-fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: with --direction up" \
+fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: --direction up" \
 	aopf -y 3 --lives-only passed.tsv
 awk '{ $2 = $2 == "y" ? "y" : 8 - $2 } 1' OFS="\t" passed.tsv >receding.tsv
 fails "values that recede with the direction given" 3 "recede from the threshold, and no life ends" \

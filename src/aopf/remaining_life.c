@@ -551,12 +551,10 @@ static int check_direction(const struct outlook *o, const char *unit)
 	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
 
 	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
-		warn("%s%sthe values recede from the threshold, and no life ends%s%s%s",
+		warn("%s%sthe values recede from the threshold, and no life ends: "
+		     "--direction %s is for the other way",
 			unit, *unit ? ": " : "",
-			direction == AUTO ? ": with --direction " : "",
-			direction == AUTO ? directions[o->now.direction > 0 ? DOWN : UP]
-					  : "",
-			direction == AUTO ? " it had been passed before" : "");
+			directions[o->now.direction > 0 ? DOWN : UP]);
 		return 1;
 	}
 	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
