@@ -235,8 +235,8 @@ static int new_tiles(struct point_sum *s)
 /* Memory for the elements and what they do. */
 static int new_elements(struct point_sum *s)
 {
-	s->around_x = lesser_int((int)ceil(NEAR / s->dx), s->par.nx) - 1;
-	s->around_y = lesser_int((int)ceil(NEAR / s->dy), s->par.ny) - 1;
+	s->around_x = (int)fmin(ceil(NEAR / s->dx), s->par.nx) - 1;
+	s->around_y = (int)fmin(ceil(NEAR / s->dy), s->par.ny) - 1;
 	s->offsets = (2 * s->around_x + 1) * (2 * s->around_y + 1);
 	s->effect = aligned_alloc(sizeof *s->effect,
 		2 * (size_t)s->shallow * (size_t)s->offsets * sizeof *s->effect);
