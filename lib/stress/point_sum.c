@@ -194,9 +194,9 @@ static int level_of(int k)
  * are smallest ones. */
 static size_t most_near(double width, double apart, int squares)
 {
-	double sides = TILE_SIDE / (2 * BLOCK) + 2 * ceil(apart / width);
+	const int below = TILE_SIDE / (2 * BLOCK);
 
-	return (size_t)fmin(sides, squares);
+	return (size_t)fmin(below + 2 * ceil(apart / width), squares);
 }
 
 /* Fours of squares of one size that may be listed for a tile. */
