@@ -190,16 +190,19 @@ static int level_of(int k)
 }
 
 /* Squares of a size but the smallest along an axis that may not be far from a tile: those
- * that it lies on, and those on either side whose nearest edge is not. */
-static size_t most_near(double width, double apart)
+ * that it lies on, and those on either side whose nearest edge is not; no more than there
+ * are smallest ones. */
+static size_t most_near(double width, double apart, int squares)
 {
-	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(apart / width);
+	double sides = TILE_SIDE / (2 * BLOCK) + 2 * ceil(apart / width);
+
+	return (size_t)fmin(sides, squares);
 }
 
 /* Fours of squares of one size that may be listed for a tile. */
 static size_t most_fours(const struct point_sum *s, double apart)
 {
-	return most_near(s->dx, apart) * most_near(s->dy, apart);
+	return most_near(s->dx, apart, s->nx) * most_near(s->dy, apart, s->ny);
 }
 
 /* Eights of loads that may be far from a tile. */
