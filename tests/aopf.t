@@ -346,7 +346,7 @@ mixed 2 >mixed.tsv
 # and of two in random order
 awk 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
 	print t "\t" t / 200 * (1 + (rand() < 0.4)) + 0.02 * (rand() - 0.5) }' >random.tsv
-fails "two machines in one series" 3 "rows and those before them lie on two courses by turns: values of two machines" \
+fails "two machines in one series" 3 "the values lie on two courses by turns: those of two machines" \
 	aopf -y 1 --lives-only mixed.tsv
 fails "two machines in random order" 3 "lie on two courses by turns" aopf -y 1 --lives-only random.tsv
 ok "one machine" sh -c "aopf -y 1 --lives-only 2>err >out <<-END && ! grep . err
@@ -396,7 +396,7 @@ at_most "the error of the state then" \
 is "the order is 1 then" "$(column order out | tail -1)" 1
 # Wear that began beyond its threshold would never end with the direction of the first value.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 12; t++) print t "\t" 5 + t / 10 }' >passed.tsv
-fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: with --direction up" \
+fails "a threshold that had been passed before" 3 "recede from the threshold, and no life ends: --direction up" \
 	aopf -y 3 --lives-only passed.tsv
 awk '{ $2 = $2 == "y" ? "y" : 8 - $2 } 1' OFS="\t" passed.tsv >receding.tsv
 fails "values that recede with the direction given" 3 "recede from the threshold, and no life ends" \

@@ -190,16 +190,19 @@ static int level_of(int k)
 }
 
 /* Squares of a size but the smallest along an axis that may not be far from a tile: those
- * that it lies on, and those on either side whose nearest edge is not. */
-static size_t most_near(double width, double apart)
+ * that it lies on, and those on either side whose nearest edge is not; no more than there
+ * are smallest ones. */
+static size_t most_near(double width, double apart, int squares)
 {
-	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(apart / width);
+	const int below = TILE_SIDE / (2 * BLOCK);
+
+	return (size_t)fmin(below + 2 * ceil(apart / width), squares);
 }
 
 /* Fours of squares of one size that may be listed for a tile. */
 static size_t most_fours(const struct point_sum *s, double apart)
 {
-	return most_near(s->dx, apart) * most_near(s->dy, apart);
+	return most_near(s->dx, apart, s->nx) * most_near(s->dy, apart, s->ny);
 }
 
 /* Eights of loads that may be far from a tile. */
@@ -235,8 +238,8 @@ static int new_tiles(struct point_sum *s)
 /* Memory for the elements and what they do. */
 static int new_elements(struct point_sum *s)
 {
-	s->around_x = lesser_int((int)ceil(NEAR / s->dx), s->par.nx) - 1;
-	s->around_y = lesser_int((int)ceil(NEAR / s->dy), s->par.ny) - 1;
+	s->around_x = (int)fmin(ceil(NEAR / s->dx), s->par.nx) - 1;
+	s->around_y = (int)fmin(ceil(NEAR / s->dy), s->par.ny) - 1;
 	s->offsets = (2 * s->around_x + 1) * (2 * s->around_y + 1);
 	s->effect = aligned_alloc(sizeof *s->effect,
 		2 * (size_t)s->shallow * (size_t)s->offsets * sizeof *s->effect);

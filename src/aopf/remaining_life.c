@@ -133,7 +133,6 @@ struct outlook {
 		long beyond;  /* successive values past the threshold */
 		long healthy; /* values short of it */
 		int failed, alarm;
-		long alternating; /* values of two courses */
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
@@ -526,7 +525,6 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		now->range = rescaled_range(
 			&now->scale, RESCALED_HALF, outlook_options.threshold);
 		now->rescaled = in->t;
-		now->alternating += rescaled_alternates(&now->scale);
 	}
 	believed = !is_rescaled(o) &&
 		   !rescaled_doubtful(&now->scale, outlook_options.threshold);
@@ -551,12 +549,10 @@ static int check_direction(const struct outlook *o, const char *unit)
 	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
 
 	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
-		warn("%s%sthe values recede from the threshold, and no life ends%s%s%s",
+		warn("%s%sthe values recede from the threshold, and no life ends: "
+		     "--direction %s is for the other way",
 			unit, *unit ? ": " : "",
-			direction == AUTO ? ": with --direction " : "",
-			direction == AUTO ? directions[o->now.direction > 0 ? DOWN : UP]
-					  : "",
-			direction == AUTO ? " it had been passed before" : "");
+			directions[o->now.direction > 0 ? DOWN : UP]);
 		return 1;
 	}
 	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
@@ -576,17 +572,18 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
 	    stuck = o->predict && predict_bank(o->predict) &&
 		    bank_stuck(predict_bank(o->predict)),
+	    alternates = rescaled_alternates(&o->now.scale),
 	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful || stuck ||
-		    o->now.alternating > 0;
+		    alternates;
 
 	if (doubtful)
 		warn("%s%sno life is predicted after the last rows: their unit or the gain "
 		     "may have changed, or a counter has wrapped",
 			unit, *unit ? ": " : "");
-	if (o->now.alternating > 0)
-		warn("%s%s%ld rows and those before them lie on two courses by turns: "
-		     "values of two machines are told apart by --unit",
-			unit, *unit ? ": " : "", o->now.alternating);
+	if (alternates)
+		warn("%s%sthe values lie on two courses by turns: those of two machines are "
+		     "told apart by --unit",
+			unit, *unit ? ": " : "");
 	if (stuck)
 		warn("%s%sthe last values are equal: the sensor sticks or is at the end of its "
 		     "range, and the lives continue the wear before",

@@ -317,7 +317,7 @@ static int check_state(
 	int status = 0;
 	char *more;
 
-	if (s->alternating > 0)
+	if (rescaled_alternates(&s->seen))
 		status = doubt(out, "the values lie on two courses by turns",
 			", as those of two machines do");
 	if (bank && bank_stuck(bank))

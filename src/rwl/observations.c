@@ -183,7 +183,6 @@ int state_next(struct observations *s)
 			"%s: line %ld: the last %d values are %.3g times those before, and so are "
 			"their steps: their unit or the gain seems to have changed",
 			table_name(t), table_line(t), RESCALED_HALF, factor);
-	s->alternating += rescaled_alternates(&s->seen);
 	if (s->rows == 1)
 		s->first_t = time;
 	s->t = time;

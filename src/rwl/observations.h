@@ -41,7 +41,6 @@ struct observations {
 	long passed;          /* particles without a diameter */
 	long beyond;          /* values that suggest another unit */
 	struct rescaled seen; /* values, to find out whether their unit changes */
-	long alternating;     /* values of two courses */
 	struct noise noise;   /* of volumes */
 	double lowest;        /* volume, no more than 0, */
 	long lowest_line;     /* and where it is */

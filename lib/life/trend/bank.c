@@ -379,11 +379,8 @@ static void take(struct bank *b, const struct row *r)
 			frozen += tr->weight * one;
 	}
 	b->frozen += frozen;
-	if (!equal) {
-		b->freed = fmax(b->freed, b->stuck);
-		b->stuck = 0;
-	}
-	b->stuck += equal ? frozen : 0;
+	b->freed = equal ? b->freed : fmax(b->freed, b->stuck);
+	b->stuck = equal ? b->stuck + frozen : 0;
 	if (b->par.direction * (r->y - b->farthest) > 0)
 		b->farthest = r->y;
 	b->before = r->y;

@@ -44,6 +44,41 @@ static double factor_at(const double *y, int n, double *steps)
 	return ratio;
 }
 
+/* Courses are told apart by a largest step of AWAY times the steps along each of them,
+ * with TURNS changes between them and as many values on each.  Of 200 000 windows of
+ * normal noise 7 look like that, of uniform noise 68, and with 5 % of outliers that are
+ * all equal 161; of two machines 10 and 20 standard deviations apart in random order .57
+ * and .88 do, in turn .70 and 1.  With AWAY 9 these are 0, 20, 161; .38, .88, .49 and 1.
+ */
+static const double AWAY = 8;
+enum { TURNS = 5 };
+
+/* Rounded values scatter by at least half of the smallest step, over one row or two. */
+static int takes_turns(const struct rescaled *r)
+{
+	const double *y = r->y;
+	double most = 0, least = INFINITY, squares = 0, last[2] = { 0 };
+	int n[2] = { 0 }, course = 0, turns = 0;
+
+	for (int i = 2; i < 2 * RESCALED_HALF; i++) {
+		most = fmax(most, fabs(y[i] - y[i - 1]));
+		for (int k = 1; k < 3; k++)
+			if (y[i] != y[i - k])
+				least = fmin(least, fabs(y[i] - y[i - k]));
+	}
+	for (int i = 0; i < 2 * RESCALED_HALF; i++) {
+		if (i > 0 && fabs(y[i] - y[i - 1]) > most / 2) {
+			course = !course;
+			turns++;
+		}
+		if (n[course]++ > 0)
+			squares += pow(y[i] - last[course], 2) + least * least / 4;
+		last[course] = y[i];
+	}
+	return turns >= TURNS && fmin(n[0], n[1]) >= TURNS &&
+	       (2 * RESCALED_HALF - 2) * most * most > AWAY * AWAY * squares;
+}
+
 double rescaled_add(struct rescaled *r, double y)
 {
 	double *middle = r->y + RESCALED_HALF, steps, factor;
@@ -52,6 +87,7 @@ double rescaled_add(struct rescaled *r, double y)
 	r->y[2 * RESCALED_HALF - 1] = y;
 	if (++r->rows < 2 * RESCALED_HALF)
 		return 0;
+	r->turns += takes_turns(r);
 	factor = factor_at(middle, RESCALED_HALF, &steps);
 	if (fabs(steps) > log(OTHER) && fabs(steps - 2 * log(factor)) < log(SAME))
 		return factor;
@@ -104,38 +140,8 @@ int rescaled_doubtful(const struct rescaled *r, double threshold)
 	return 0;
 }
 
-/* Courses are told apart by a largest step of AWAY times the steps along each of them,
- * with TURNS changes between them and as many values on each.  Of 200 000 windows of
- * normal noise none look like that, of uniform noise 20, and with 5 % of outliers that
- * are all equal 161; of two machines 10 and 20 standard deviations apart in random order
- * .38 and .88 do, in turn .49 and 1.  With AWAY 8 these are 7, 68, 161; .57, .88, .70
- * and 1. */
-static const double AWAY = 9;
-enum { TURNS = 5 };
-
-/* Rounded values scatter by at least half of the smallest step, over one row or two. */
+/* A machine of two states may be measured in turn for a while. */
 int rescaled_alternates(const struct rescaled *r)
 {
-	const double *y = r->y;
-	double most = 0, least = INFINITY, squares = 0, last[2] = { 0 };
-	int n[2] = { 0 }, course = 0, turns = 0;
-
-	for (int i = 2; i < 2 * RESCALED_HALF; i++) {
-		most = fmax(most, fabs(y[i] - y[i - 1]));
-		for (int k = 1; k < 3; k++)
-			if (y[i] != y[i - k])
-				least = fmin(least, fabs(y[i] - y[i - k]));
-	}
-	for (int i = 0; i < 2 * RESCALED_HALF; i++) {
-		if (i > 0 && fabs(y[i] - y[i - 1]) > most / 2) {
-			course = !course;
-			turns++;
-		}
-		if (n[course]++ > 0)
-			squares += pow(y[i] - last[course], 2) + least * least / 4;
-		last[course] = y[i];
-	}
-	return r->rows >= 2 * RESCALED_HALF && turns >= TURNS &&
-	       fmin(n[0], n[1]) >= TURNS &&
-	       (2 * RESCALED_HALF - 2) * most * most > AWAY * AWAY * squares;
+	return r->turns > 0 && 4 * r->turns > r->rows - 2 * RESCALED_HALF + 1;
 }

@@ -14,7 +14,7 @@ enum { RESCALED_HALF = 8 }; /* rows before and after the change */
 /* All zero before the first value. */
 struct rescaled {
 	double y[2 * RESCALED_HALF]; /* the last values, oldest first */
-	long rows;
+	long rows, turns;            /* turns: windows of two courses */
 };
 
 /* Adds a value.  The factor if the values before the last RESCALED_HALF rows were in
@@ -27,7 +27,8 @@ double rescaled_range(const struct rescaled *r, int n, double threshold);
  * because their steps differ from those before rather by the factor of the level than not
  * at all, or come from a counter that has wrapped. */
 int rescaled_doubtful(const struct rescaled *r, double threshold);
-/* 1 if the last 2 RESCALED_HALF values lie on two courses and change between them. */
+/* 1 if, in more than a quarter of all windows of 2 RESCALED_HALF values, they lie on two
+ * courses and change between them. */
 int rescaled_alternates(const struct rescaled *r);
 
 #endif
