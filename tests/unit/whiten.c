@@ -232,27 +232,31 @@ static void colour(double *x, size_t n, double a)
 static void test_colour(void)
 {
 	enum { LITTLE = 20480, TIMES = 100 };
-	double power[COLOUR_BINS], a = 0.7, worst = 0, squares = 0;
+	struct colour noise;
+	const double *power = noise.power;
+	double a = 0.7, worst = 0, squares = 0;
 	double mean = 0, most = 0, scatter;
 	size_t skip;
 	struct whitening w;
-	int white = 0;
+	int white = 0, none = 0;
 
 	/* 39 segments: sums of 32 bins, 22 of them independent, scatter by 2.4 %, and 1.3
 	 * is nine times that from end to end. */
 	for (unsigned k = 0; k < TIMES; k++) {
 		make_noise(y[0], LITTLE, 1, 2 * k);
 		make_noise(y[1], LITTLE, 1, 2 * k + 1);
-		white += colour_power(y[0], y[1], LITTLE, power) == NUM_OK &&
-			 colour_is_white(power, 0);
+		white += colour_power(y[0], y[1], LITTLE, &noise) == NUM_OK &&
+			 colour_is_white(&noise, 0);
+		none += noise.drift == 0;
 	}
 	ok(white == TIMES, "the whiteness test accepts white noise: %d of %d", white,
 		TIMES);
+	ok(none == TIMES, "white noise does not drift: %d of %d", none, TIMES);
 	for (unsigned c = 0; c < 2; c++) {
 		make_noise(y[c], N, 1, c);
 		colour(y[c], N, a);
 	}
-	ok(colour_power(y[0], y[1], N, power) == NUM_OK && !colour_is_white(power, 0),
+	ok(colour_power(y[0], y[1], N, &noise) == NUM_OK && !colour_is_white(&noise, 0),
 		"the whiteness test rejects low-passed noise");
 	for (int k = 0; k < COLOUR_BINS; k++) {
 		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
@@ -273,15 +277,15 @@ static void test_colour(void)
 		worst / scatter);
 	/* The mean is that of 2 N samples with 1 degree of freedom each. */
 	near(mean, 0, 4 / sqrt(N), "the measured power is right in the mean");
-	ok(whitening_of_noise(&w, power, COLOUR_BINS, WHITEN_COLOURED) == NUM_OK,
+	ok(whitening_of_noise(&w, power, 0, COLOUR_BINS, WHITEN_COLOURED) == NUM_OK,
 		"the noise spectrum has an inverse");
 	ok(w.low == 0 && w.high == 0.5, "no frequency is lost");
 	near(w.band, 1, 1e-3, "the band is the whole spectrum");
 	skip = (size_t)w.half;
 	for (unsigned c = 0; c < 2; c++)
 		whitening_apply(&w, y[c], N);
-	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, power) == NUM_OK &&
-			colour_is_white(power, 0),
+	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, &noise) == NUM_OK &&
+			colour_is_white(&noise, 0),
 		"the inverse makes the noise white");
 	mean = 0;
 	for (int k = 0; k < COLOUR_BINS; k++)
@@ -290,6 +294,83 @@ static void test_colour(void)
 	near(mean / most, 1, 4 / sqrt(N),
 		"the whitened noise has the mean power of the largest line");
 	test_pulse(&w, &(double){ 1 }, 1);
+	whitening_clear(&w);
+}
+
+/* Adds a random walk to x, in steps of standard deviation step. */
+static void add_walk(double *x, size_t n, double step, unsigned seed)
+{
+	static double steps[N];
+	double at = 0;
+
+	make_noise(steps, n, step, seed);
+	for (size_t i = 0; i < n; i++)
+		x[i] += at += steps[i];
+}
+
+/* Noise behind a low-pass at this share of the rate is no walk: its power rises no more
+ * below. */
+static void test_no_drift(double corner)
+{
+	enum { LITTLE = 65536, TIMES = 40 };
+	struct colour noise;
+	int none = 0;
+
+	for (unsigned k = 0; k < TIMES; k++) {
+		for (unsigned c = 0; c < 2; c++) {
+			make_noise(y[c], LITTLE, 1, 2 * k + c);
+			colour(y[c], LITTLE, exp(-2 * acos(-1) * corner));
+		}
+		none += colour_power(y[0], y[1], LITTLE, &noise) == NUM_OK &&
+			noise.drift == 0;
+	}
+	ok(none >= TIMES - 1, "noise low-passed at %.3f does not drift: %d of %d", corner,
+		none, TIMES);
+}
+
+/* Steps of 0.05 double the power of the noise at 0.8 % of the rate. */
+static void test_drift(void)
+{
+	const double step = 0.05;
+	struct colour noise;
+	struct whitening w;
+	double low = 0;
+
+	for (unsigned c = 0; c < 2; c++) {
+		make_noise(y[c], N, 1, c);
+		add_walk(y[c], N, step, 2 + c);
+	}
+	ok(colour_power(y[0], y[1], N, &noise) == NUM_OK && !colour_is_white(&noise, 0),
+		"the whiteness test rejects noise that drifts");
+	/* Some six bins of 255 segments of two channels tell it: 1 / sqrt(6 255) is 2.6
+	 * %, and half-overlapping segments are not quite independent. */
+	near(noise.drift / (step * step), 1, 0.15, "the drift of the noise is measured");
+	ok(colour_smooth(&noise) == NUM_OK &&
+			whitening_of_noise(&w, noise.power, noise.drift, COLOUR_BINS,
+				WHITEN_COLOURED) == NUM_OK,
+		"noise that drifts has an inverse");
+	ok(w.low == 0 && w.high == 0.5, "no frequency is lost to drift");
+	ok(whitening_removes_mean(&w), "the inverse of drift removes a constant");
+	for (unsigned c = 0; c < 2; c++) {
+		for (size_t i = 0; i < N; i++)
+			y[c][i] += 1e3;
+		whitening_apply(&w, y[c], N);
+	}
+	ok(colour_power(y[0], y[1], N, &noise) == NUM_OK && noise.drift == 0 &&
+			colour_is_white(&noise, 0),
+		"the inverse makes noise that drifts white, to its ends");
+	/* Taps of finite length leave some of what is slower than they are, which is
+	 * fitted with the pulses: it is smaller than the noise of a sample. */
+	for (size_t i = 0; i < N; i += SEGMENT) {
+		double sum = 0;
+
+		for (size_t k = 0; k < SEGMENT; k++)
+			sum += y[0][i + k] / SEGMENT;
+		low += sum * sum * SEGMENT / N;
+	}
+	ok(low < 0.1 * noise.power[COLOUR_BINS / 2],
+		"little drift is left below the lowest frequency measured: %.3f",
+		low / noise.power[COLOUR_BINS / 2]);
 	whitening_clear(&w);
 }
 
@@ -317,7 +398,12 @@ int main(void)
 			segments == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();
-	ok(whitening_of_noise(&w, silence, 9, WHITEN_COLOURED) == NUM_DOMAIN,
+	test_no_drift(0.01);
+	test_no_drift(0.02);
+	test_no_drift(0.05);
+	test_no_drift(0.15);
+	test_drift();
+	ok(whitening_of_noise(&w, silence, 0, 9, WHITEN_COLOURED) == NUM_DOMAIN,
 		"a noise without power cannot be made white");
 	return tap_done();
 }

@@ -27,7 +27,8 @@ static enum separate_status attempt(
 	c->whitening = *w;
 	c->work = look->work;
 	c->estimated = look->settled;
-	c->presumed_white = look->coloured && !look->settled;
+	c->presumed_white =
+		look->coloured && !look->settled && !(w->tap && look->noise.drift > 0);
 	for (int k = 0; work && k < 2; k++) {
 		double *y = work + (size_t)k * n;
 
@@ -58,17 +59,20 @@ static enum separate_status of_whitening(enum num_status status)
 				      : SEPARATE_NARROW;
 }
 
+/* Noise that was coloured has a smooth spectrum, that of a filter may have edges. */
 static enum separate_status attempt_kind(
 	struct look *look, enum whiten_kind kind, struct calibration *c)
 {
+	struct colour noise = look->noise;
 	struct whitening w;
-	enum separate_status status =
-		of_whitening(whitening_of_noise(&w, look->power, COLOUR_BINS, kind));
+	enum separate_status status;
 
 	look->kind = kind;
-	if (status != SEPARATE_OK)
-		return status;
-	return attempt(look, &w, c);
+	if (kind == WHITEN_COLOURED && colour_smooth(&noise) != NUM_OK)
+		return SEPARATE_MEMORY;
+	status = of_whitening(
+		whitening_of_noise(&w, noise.power, noise.drift, COLOUR_BINS, kind));
+	return status == SEPARATE_OK ? attempt(look, &w, c) : status;
 }
 
 /* Tries both explanations of noise that is not white: it was filtered with the pulses, or
@@ -175,8 +179,8 @@ static enum separate_status lacks_low(
 {
 	struct template white = { .shape = c->shape, .duration = c->duration };
 	struct whitening w;
-	enum num_status status =
-		whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED);
+	enum num_status status = whitening_of_noise(
+		&w, look->noise.power, look->noise.drift, COLOUR_BINS, WHITEN_FILTERED);
 	double left = 1;
 
 	if (status != NUM_OK)
@@ -191,16 +195,14 @@ static enum separate_status lacks_low(
  * describe it. */
 static enum separate_status attempt_white(struct look *look, struct calibration *c)
 {
-	struct look smooth = *look;
-	enum separate_status status;
+	enum separate_status status = attempt_kind(look, WHITEN_COLOURED, c);
 
-	if (colour_smooth(smooth.power) != NUM_OK)
-		return SEPARATE_MEMORY;
-	status = attempt_kind(&smooth, WHITEN_COLOURED, c);
 	if (status == SEPARATE_MEMORY)
 		return status;
-	look->attempts = smooth.attempts;
-	look->work = smooth.work;
+	/* No filter makes noise that drifts. */
+	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
+		learn_describes(c))
+		return status;
 	if (status == SEPARATE_OK && c->measured && !c->dense && learn_describes(c)) {
 		int lacks = 0;
 

@@ -631,10 +631,12 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 enum { FEWEST = 6 };
 
 /* 1 if what was learned needs no other attempt.  A shape corrected until no example is
- * one pulse may be another one's half. */
+ * one pulse may be another one's half.  Where whitening takes most of the power of a
+ * pulse, one taken from the record is compared with the known ones. */
 static int is_enough(int taken, const struct calibration *c)
 {
-	return learn_describes(c) && (taken || !c->corrected || c->isolated > 0);
+	return learn_describes(c) &&
+	       (taken ? !c->whitening.tap : !c->corrected || c->isolated > 0);
 }
 
 /* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with

@@ -141,9 +141,9 @@ static enum num_status measure_noise(const struct calibrate_par *par,
 
 static enum separate_status look_for_colour(const struct record *rec, struct look *look)
 {
-	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, look->power);
+	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, &look->noise);
 
-	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
+	look->coloured = status == NUM_OK && !colour_is_white(&look->noise, 0);
 	return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_OK;
 }
 
@@ -769,7 +769,7 @@ static enum separate_status conclude(
 
 int measure_white_above(const struct look *look, double duration)
 {
-	return colour_is_white(look->power, fmin(SHAPE_BAND / duration, 0.25));
+	return colour_is_white(&look->noise, fmin(SHAPE_BAND / duration, 0.25));
 }
 
 /* Scales a pulse taken from a whitened record so that amplitudes are those of the
@@ -826,7 +826,11 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		status = look_for_colour(&rec, look);
 		c->presumed_white = look->coloured;
 	}
-	look->found.alone = look->first && c->whitening.tap;
+	/* Pulses of any shape would be fitted to the drift. */
+	if (status == SEPARATE_OK && look->first && look->noise.drift > 0 &&
+		!c->whitening.tap)
+		return SEPARATE_COLOURED;
+	look->found.alone = look->first && c->whitening.tap && !(look->noise.drift > 0);
 	look->found.white = c->whitening.tap || !look->coloured ||
 			    measure_white_above(look, c->duration);
 	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))

@@ -23,7 +23,7 @@ struct look {
 	double low;            /* lag of the lowest autocorrelation */
 	double drift;          /* mean square change of lines over some thousand samples,
 				  noise 1 */
-	double power[COLOUR_BINS];
+	struct colour noise;
 	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike
 		     */
 	int seen;   /* 1: another attempt told particles from noise */

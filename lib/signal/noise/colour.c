@@ -1,5 +1,7 @@
 /* colour.c - see colour.h */
 #include "signal/noise/colour.h"
+#include "num/cholesky.h"
+#include "num/dot.h"
 #include "num/periodogram.h"
 #include "num/sigmas.h"
 #include "signal/noise/robust.h"
@@ -188,19 +190,99 @@ static enum num_status sharpen(double *power, size_t bins)
 	return status == NUM_OK ? positive_spectrum(power, bins) : status;
 }
 
-enum num_status colour_power(
-	const double *y1, const double *y2, size_t n, double power[COLOUR_BINS])
+/* Bins from which drift is estimated: those below have power of the window's main lobe.
+ */
+enum { DRIFT_FIRST = 3, DRIFT_END = 32 };
+
+/* Power at frequency k / LONGEST of the sum of independent steps of variance 1. */
+static double walk(double k)
 {
-	double other[COLOUR_BINS];
+	double s = 2 * sin(M_PI * k / LONGEST);
+
+	return 1 / (s * s);
+}
+
+/* Powers at the lowest frequencies of white noise, of noise behind a low-pass of this
+ * corner, in bins, and, if terms is 3, of a random walk: weighted least squares, the
+ * weights those of exponential variates of the mean fitted.  *drift: as in struct colour.
+ * Returns the deviance of these means; INFINITY: there is no solution. */
+static double fit_drift(
+	const double *power, int segments, double corner, int terms, double *drift)
+{
+	enum { ROUNDS = 8, WALK = 2, MOST };
+	double x[MOST] = { power[DRIFT_END - 1] }, a[MOST * MOST], deviance = 0;
+
+	for (int round = 0; round < ROUNDS; round++) {
+		double y[MOST] = { 0 };
+
+		memset(a, 0, sizeof a);
+		deviance = 0;
+		for (int k = DRIFT_FIRST; k < DRIFT_END; k++) {
+			double u = k / corner;
+			double term[MOST] = { 1, 1 / (1 + u * u),
+				walk(k) / walk(DRIFT_END) };
+			double mean = fmax(dot(x, term, MOST), 0.1 * power[k]);
+			double weight = segments / (mean * mean);
+
+			deviance += 2 * segments * (log(mean) + power[k] / mean);
+			for (int i = 0; i < terms; i++) {
+				y[i] += weight * term[i] * power[k];
+				for (int j = 0; j <= i; j++)
+					a[i * MOST + j] += weight * term[i] * term[j];
+			}
+		}
+		if (cholesky_factor(a, (size_t)terms, MOST, 0) != NUM_OK)
+			return INFINITY;
+		cholesky_solve(a, (size_t)terms, MOST, y);
+		memcpy(x, y, sizeof x);
+	}
+	*drift = fmax(x[WALK] / ((x[0] + x[1]) * walk(DRIFT_END)), 0);
+	return x[0] + x[1] > 0 ? deviance : INFINITY;
+}
+
+/* Variance of the steps of a random walk over the power of the other noise at the lowest
+ * frequencies; 0 if noise behind a low-pass explains them as well. */
+static double find_drift(const double *power, int segments)
+{
+	double drift = 0, without = INFINITY, with = INFINITY;
+
+	/* A low-pass of a lower corner cannot be told from drift. */
+	for (double corner = 2 * DRIFT_FIRST; corner <= 2 * DRIFT_END; corner *= 1.25) {
+		double found = 0, deviance;
+
+		without = fmin(without, fit_drift(power, segments, corner, 2, &found));
+		deviance = fit_drift(power, segments, corner, 3, &found);
+		if (deviance < with) {
+			with = deviance;
+			drift = found;
+		}
+	}
+	return without - with > SIGMAS_RARELY * SIGMAS_RARELY ? drift : 0;
+}
+
+enum num_status colour_power(
+	const double *y1, const double *y2, size_t n, struct colour *colour)
+{
+	double other[COLOUR_BINS], *power = colour->power;
 	int segments;
 	enum num_status status =
 		colour_spectrum(y1, y2, n, LONGEST, power, other, &segments);
 
+	colour->drift = 0;
 	if (status != NUM_OK)
 		return status;
 	for (int k = 0; k < COLOUR_BINS; k++)
 		power[k] = 0.5 * (power[k] + other[k]);
-	return segments >= FEWEST ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
+	if (segments < FEWEST)
+		return NUM_DOMAIN;
+	colour->drift = find_drift(power, segments);
+	if (colour->drift > 0) {
+		for (int k = DRIFT_FIRST; k < COLOUR_BINS; k++)
+			power[k] /= 1 + colour->drift * walk(k);
+		for (int k = 0; k < DRIFT_FIRST; k++)
+			power[k] = power[DRIFT_FIRST];
+	}
+	return sharpen(power, COLOUR_BINS);
 }
 
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,
@@ -227,8 +309,9 @@ static size_t last_lag(const double *r, size_t points, size_t whole)
 	return 2 * k;
 }
 
-enum num_status colour_smooth(double power[COLOUR_BINS])
+enum num_status colour_smooth(struct colour *colour)
 {
+	double *power = colour->power;
 	size_t points = LONGEST, half = points / 2, last;
 
 	if (fft_even(power, COLOUR_BINS) != NUM_OK)
@@ -245,7 +328,7 @@ enum num_status colour_smooth(double power[COLOUR_BINS])
 	return positive_spectrum(power, COLOUR_BINS);
 }
 
-int colour_is_white(const double power[COLOUR_BINS], double from)
+int colour_is_white(const struct colour *colour, double from)
 {
 	enum { GROUP = 32 };
 	double least = INFINITY, most = 0;
@@ -255,7 +338,7 @@ int colour_is_white(const double power[COLOUR_BINS], double from)
 		double sum = 0;
 
 		for (int i = k; i < k + GROUP; i++)
-			sum += power[i];
+			sum += colour->power[i] * (1 + colour->drift * walk(i));
 		least = fmin(least, sum);
 		most = fmax(most, sum);
 	}

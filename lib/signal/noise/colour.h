@@ -10,6 +10,13 @@
 
 enum { COLOUR_BINS = 513 };
 
+/* Spectrum of the noise from 0 to half the rate, with the power of a random walk, drift /
+ * (2 sin(pi f))^2 at f cycles per sample, as a factor of it beside 1. */
+struct colour {
+	double power[COLOUR_BINS];
+	double drift;
+};
+
 /* Standard deviations that the noise of y1, y2[0 .. n), whitened by w, would have if its
  * band were the whole spectrum; too large if hardly any stretch is without pulses. */
 enum num_status colour_level(const double *y1, const double *y2, size_t n,
@@ -29,12 +36,12 @@ enum num_status colour_spectrum(const double *y1, const double *y2, size_t n,
 /* Spectrum of the noise at COLOUR_BINS frequencies from 0 to half the rate, the mean of
  * both channels, smoothed.  NUM_DOMAIN if fewer than 16 segments hold only noise. */
 enum num_status colour_power(
-	const double *y1, const double *y2, size_t n, double power[COLOUR_BINS]);
+	const double *y1, const double *y2, size_t n, struct colour *colour);
 /* Removes from such a spectrum the contribution of lags at which the noise is not
  * correlated.  It would roughen the spectrum, and a filter made from it would ring. */
-enum num_status colour_smooth(double power[COLOUR_BINS]);
+enum num_status colour_smooth(struct colour *colour);
 /* 1 if this is the spectrum of white noise, within its scatter, above the frequency from
  * (per sample). */
-int colour_is_white(const double power[COLOUR_BINS], double from);
+int colour_is_white(const struct colour *colour, double from);
 
 #endif

@@ -162,12 +162,12 @@ static enum num_status whitening_make(struct whitening *w, const double *power, 
 	return status;
 }
 
-enum num_status whitening_of_noise(
-	struct whitening *w, const double *power, size_t n, enum whiten_kind kind)
+enum num_status whitening_of_noise(struct whitening *w, const double *power, double drift,
+	size_t n, enum whiten_kind kind)
 {
 	enum { FINER = 8 };
 	size_t fine = FINER * (n - 1) + 1, first = 0;
-	double *between = malloc(fine * sizeof *between), most = 0;
+	double *between = malloc(fine * sizeof *between), most = 0, weakest = INFINITY;
 	enum num_status status;
 
 	memset(w, 0, sizeof *w);
@@ -187,7 +187,20 @@ enum num_status whitening_of_noise(
 		else
 			between[k] = pow(power[from], 1 - part) *
 				     pow(fmax(power[to], least), part);
+		if (between[k] > 0)
+			weakest = fmin(weakest, between[k]);
 	}
+	/* The power of a walk has no limit: it must not make others too weak. */
+	for (size_t k = 0; k < fine && drift > 0; k++) {
+		double sine =
+			2 * sin(0.5 * M_PI * fmax((double)k, 0.5) / (double)(fine - 1));
+
+		between[k] = fmin(between[k] * (1 + drift / (sine * sine)),
+			fmax(between[k], weakest / least_power));
+	}
+	most = 0;
+	for (size_t k = 0; k < fine; k++)
+		most = fmax(most, between[k]);
 	status = whitening_make(w, between, fine, most, (int)(2 * n), kind);
 	free(between);
 	return status;
@@ -225,16 +238,30 @@ void whitening_clear(struct whitening *w)
 	w->tap = w->seen = NULL;
 }
 
+int whitening_removes_mean(const struct whitening *w)
+{
+	const double small = 0.05; /* of the gain at 0 over that of white noise */
+	double sum = 0, all = 0;
+
+	for (int k = 0; k <= 2 * w->half; k++) {
+		sum += w->tap[k];
+		all += w->tap[k] * w->tap[k];
+	}
+	return fabs(sum) < small * sqrt(all);
+}
+
 enum num_status whitening_apply(const struct whitening *w, double *x, size_t n)
 {
 	struct fir *fir = fir_new(w->tap, 2 * (size_t)w->half + 1, 1, 0);
 	size_t block = fir ? fir_block(fir) : 0, delay = (size_t)w->half;
 	double *piece = malloc((block + 1) * sizeof *piece);
+	const int hold = whitening_removes_mean(w) && n > 0;
+	const double first = hold ? x[0] : 0, last = hold ? x[n - 1] : 0;
 
 	/* Output lags behind input. */
 	for (size_t at = 0; fir && piece && at < n + delay; at += block) {
 		for (size_t i = 0; i < block; i++)
-			piece[i] = at + i < n ? x[at + i] : 0;
+			piece[i] = (at + i < n ? x[at + i] : last) - first;
 		fir_run(fir, piece, block);
 		for (size_t i = 0; i < block; i++)
 			if (at + i >= delay && at + i < n + delay)

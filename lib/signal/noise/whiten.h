@@ -34,15 +34,19 @@ struct whitening {
 	double band;      /* variance of the noise made white, 1 at all frequencies */
 };
 
-/* From the power of the noise at n frequencies k / (2 (n - 1)), smooth between them; the
- * white noise has that of the strongest.  NUM_DOMAIN if there is none at any. */
-enum num_status whitening_of_noise(
-	struct whitening *w, const double *power, size_t n, enum whiten_kind kind);
+/* From the power of the noise at n frequencies f = k / (2 (n - 1)), smooth between them
+ * beside the factor 1 + drift / (2 sin(pi f))^2; the white noise has that of the
+ * strongest.  NUM_DOMAIN if there is none at any. */
+enum num_status whitening_of_noise(struct whitening *w, const double *power, double drift,
+	size_t n, enum whiten_kind kind);
 /* The inverse of a symmetric filter of n taps. */
 enum num_status whitening_of_filter(struct whitening *w, const double *tap, size_t n);
 void whitening_clear(struct whitening *w);
 
-/* Whitens x[0..n) in place, with zeros before and after it. */
+/* 1 if the taps remove a constant: a record is then continued by its first and last
+ * values, and otherwise by zeros. */
+int whitening_removes_mean(const struct whitening *w);
+/* Whitens x[0..n) in place, so continued. */
 enum num_status whitening_apply(const struct whitening *w, double *x, size_t n);
 
 #endif
