@@ -235,7 +235,9 @@ static enum separate_status find(struct look *look, struct calibration *c)
 		return status;
 	look->first =
 		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
+	look->drifts = !par->filter;
 	status = attempt(look, &w, c);
+	look->drifts = 0;
 	if (status == SEPARATE_COLOURED) {
 		status = attempt_white(look, c);
 		if (status != SEPARATE_COLOURED)

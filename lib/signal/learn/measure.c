@@ -827,7 +827,7 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		c->presumed_white = look->coloured;
 	}
 	/* Pulses of any shape would be fitted to the drift. */
-	if (status == SEPARATE_OK && look->first && look->noise.drift > 0 &&
+	if (status == SEPARATE_OK && look->drifts && look->noise.drift > 0 &&
 		!c->whitening.tap)
 		return SEPARATE_COLOURED;
 	look->found.alone = look->first && c->whitening.tap && !(look->noise.drift > 0);

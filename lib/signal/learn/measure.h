@@ -26,6 +26,7 @@ struct look {
 	struct colour noise;
 	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike
 		     */
+	int drifts; /* 1: return COLOURED if the noise drifts */
 	int seen;   /* 1: another attempt told particles from noise */
 	int wide;   /* 1: search the delays of turbulent flow, else of plug flow */
 	int events; /* events that must be alike, as in another attempt */
