@@ -108,7 +108,7 @@ double observed_rate_trend(const struct observed *o)
 static double squares_about(const struct observed *o, int k, double *changes)
 {
 	struct regression part[2] = { { 0 } };
-	double slope, left, fall, before = 0;
+	double slope, left, fall, passed = 0, before = 0;
 
 	for (int i = 0; i < o->n_kept; i++)
 		regression_add(&part[i >= k], o->kept[i].t, o->kept[i].gap);
@@ -124,10 +124,10 @@ static double squares_about(const struct observed *o, int k, double *changes)
 
 		*changes += i > 0 ? (off - before) * (off - before) : 0;
 		before = off;
+		if (i > 0 && i == k)
+			passed = o->kept[i].t - o->kept[i - 1].t;
 	}
-	if (k > 0 && !(fall > slope * (o->kept[k].t - o->kept[k - 1].t)))
-		return INFINITY;
-	return left;
+	return k == 0 || fall > slope * passed ? left : INFINITY;
 }
 
 int observed_falls(const struct observed *o)
