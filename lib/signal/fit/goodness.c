@@ -59,6 +59,33 @@ static void spread(const struct joint *j, int m, enum separate_verdict *verdict)
 	}
 }
 
+/* Doubts the pulses from i on, and returns 1, if they sample a smooth waveform, such as
+ * the lobe of a bubble: eight of one sign at nearly equal distances.  The ratio of two
+ * distances of a Poisson process is within 20 % with the probability tanh(0.1), and six
+ * in succession are with 1e-6.  Such pulses were 0.25 to 0.35 durations apart in two
+ * records, and are 0.43 in a regular train of 300 particles a second at 12.7 m/s. */
+static int mark_comb(
+	const struct joint *j, int i, int done, enum separate_verdict *verdict)
+{
+	enum { TEETH = 8 };
+	const struct joint_pulse *p = j->pulse + i;
+	const double most = 0.4 * j->scene.duration, alike = 0.2;
+
+	if (i + TEETH > done)
+		return 0;
+	for (int k = 1; k < TEETH; k++) {
+		double step = p[k].t - p[k - 1].t;
+
+		if (step > most || (p[k].a > 0) != (p[0].a > 0))
+			return 0;
+		if (k > 1 && fabs(log(step / (p[k - 1].t - p[k - 2].t))) > alike)
+			return 0;
+	}
+	for (int k = 0; k < TEETH; k++)
+		verdict[i + k] = SEPARATE_MISFIT;
+	return 1;
+}
+
 void goodness_of_fit(const struct joint *j, int done, double boundary, int model_holds,
 	struct goodness *out)
 {
@@ -91,6 +118,9 @@ void goodness_of_fit(const struct joint *j, int done, double boundary, int model
 		if (model_holds && j->m >= 4 && 2 * doubted > done)
 			out->stretch = SEPARATE_UNRESOLVED;
 	}
+	for (int i = 0; i < done; i++)
+		if (mark_comb(j, i, done, out->pulse) && out->stretch < SEPARATE_MISFIT)
+			out->stretch = SEPARATE_MISFIT;
 	if (j->result.full)
 		out->stretch = SEPARATE_UNRESOLVED;
 }
