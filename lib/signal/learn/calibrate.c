@@ -59,19 +59,14 @@ static enum separate_status of_whitening(enum num_status status)
 				      : SEPARATE_NARROW;
 }
 
-/* Noise that was coloured has a smooth spectrum, that of a filter may have edges. */
 static enum separate_status attempt_kind(
 	struct look *look, enum whiten_kind kind, struct calibration *c)
 {
-	struct colour noise = look->noise;
 	struct whitening w;
-	enum separate_status status;
+	enum separate_status status = of_whitening(whitening_of_noise(
+		&w, look->noise.power, look->noise.drift, COLOUR_BINS, kind));
 
 	look->kind = kind;
-	if (kind == WHITEN_COLOURED && colour_smooth(&noise) != NUM_OK)
-		return SEPARATE_MEMORY;
-	status = of_whitening(
-		whitening_of_noise(&w, noise.power, noise.drift, COLOUR_BINS, kind));
 	return status == SEPARATE_OK ? attempt(look, &w, c) : status;
 }
 
@@ -195,10 +190,16 @@ static enum separate_status lacks_low(
  * describe it. */
 static enum separate_status attempt_white(struct look *look, struct calibration *c)
 {
-	enum separate_status status = attempt_kind(look, WHITEN_COLOURED, c);
+	struct look smooth = *look;
+	enum separate_status status;
 
+	if (colour_smooth(&smooth.noise) != NUM_OK)
+		return SEPARATE_MEMORY;
+	status = attempt_kind(&smooth, WHITEN_COLOURED, c);
 	if (status == SEPARATE_MEMORY)
 		return status;
+	look->attempts = smooth.attempts;
+	look->work = smooth.work;
 	/* No filter makes noise that drifts. */
 	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
 		learn_describes(c))
