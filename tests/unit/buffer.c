@@ -32,6 +32,34 @@ static int are_equal(const struct buffer *a, const struct buffer *b)
 	return a->n == b->n && a->begin == b->begin;
 }
 
+/* Whitening starts before there is a mean, as with an instrument that is kept, or with
+ * all of them: a level, which the taps remove, leaves nothing at either end. */
+static void test_start(void)
+{
+	double tap[] = { -0.5, 1, -0.5 };
+	const struct calibration c = { .whitening = { .half = 1, .tap = tap } };
+	struct buffer early = { .ratio = RATIO }, late = { .ratio = RATIO };
+	double ends;
+
+	for (size_t i = 0; i < N; i++)
+		x[i] = 1e3 + (i < N / 2 ? 0 : x[i]);
+	if (buffer_append(&early, x, lost, 1) != NUM_OK ||
+		buffer_start(&early, &c, 0, 1) != NUM_OK ||
+		buffer_append(&early, x + 1, lost + 1, N - 1) != NUM_OK ||
+		buffer_append(&late, x, lost, N) != NUM_OK ||
+		buffer_start(&late, &c, 0, 1) != NUM_OK)
+		return;
+	ends = 0.5 * (late.x[late.n - 1] - late.x[late.n - 2]);
+	if (buffer_prepare(&early, &c, 1) != NUM_OK ||
+		buffer_prepare(&late, &c, 1) != NUM_OK)
+		return;
+	ok(are_equal(&early, &late), "whitening may start before the first mean");
+	near(late.x[0], 0, 1e-9, "a level before the record is that of its first sample");
+	near(late.x[late.n - 1], ends, 1e-9, "a level after it is that of its last one");
+	buffer_clear(&early);
+	buffer_clear(&late);
+}
+
 int main(void)
 {
 	struct buffer fine = { .n = 0 }, mean = { .n = 0 }, direct = { .ratio = RATIO };
@@ -77,5 +105,6 @@ int main(void)
 	buffer_clear(&fine);
 	buffer_clear(&mean);
 	buffer_clear(&direct);
+	test_start();
 	return tap_done();
 }

@@ -128,7 +128,7 @@ enum num_status buffer_start(
 	b->scale = scale;
 	b->fed = b->white = b->flat = b->clean;
 	b->hold = w->tap && whitening_removes_mean(w);
-	b->mean = b->hold ? b->x[b->fed - b->begin] : mean;
+	b->mean = mean;
 	tones_track_start(&b->tones, c->tones, c->omega, b->flat, c->tone_hop);
 	if (!w->tap)
 		return NUM_OK;
@@ -164,20 +164,21 @@ static enum num_status clean(struct buffer *b, const struct calibration *c, int 
 static void whiten(struct buffer *b, const struct whitening *w, int ended)
 {
 	long long end = b->begin + (long long)b->n, last = end - w->edge, block;
-	double after = 0;
+	const double tail = b->hold && b->n > 0 ? b->x[b->n - 1] : 0;
 
 	if (!b->whiten) {
 		b->white = end;
 		return;
 	}
 	block = (long long)fir_block(b->whiten);
-	if (b->hold && b->n > 0)
-		after = b->x[b->n - 1] - b->mean;
 	while (ended ? b->white < last : b->fed + block <= end) {
+		if (b->hold && b->fed == b->white) /* the first block */
+			b->mean = b->x[b->fed - b->begin];
 		for (long long i = 0; i < block; i++)
 			b->piece[i] = b->fed + i < end
 					      ? b->x[b->fed + i - b->begin] - b->mean
-					      : after;
+				      : b->hold ? tail - b->mean
+						: 0;
 		fir_run(b->whiten, b->piece, (size_t)block);
 		for (long long i = 0; i < block; i++) {
 			long long at = b->fed + i - w->half;
