@@ -142,7 +142,7 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 
 	fewer.tones = 0;
 	for (int k = 0; k < c->tones; k++)
-		if (c->tone_power[k] > fmax(TAILS, look->drift / STEADY))
+		if (c->tone_power[k] > fmax(TAILS, look->wander / STEADY))
 			fewer.omega[fewer.tones++] = c->omega[k];
 	if (fewer.tones == c->tones)
 		return SEPARATE_OK;

@@ -821,7 +821,7 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
 	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
 	normalise(&rec, c);
-	look->drift = rec.drift / (c->noise[0] * c->noise[0]);
+	look->wander = rec.drift / (c->noise[0] * c->noise[0]);
 	if (!c->whitening.tap) {
 		status = look_for_colour(&rec, look);
 		c->presumed_white = look->coloured;

@@ -21,7 +21,7 @@ struct look {
 	enum whiten_kind kind; /* the kind of colour that is being tried */
 	int settled;           /* 1: this is the last attempt */
 	double low;            /* lag of the lowest autocorrelation */
-	double drift;          /* mean square change of lines over some thousand samples,
+	double wander;         /* mean square change of lines over some thousand samples,
 				  noise 1 */
 	struct colour noise;
 	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike

@@ -190,8 +190,9 @@ static enum num_status sharpen(double *power, size_t bins)
 	return status == NUM_OK ? positive_spectrum(power, bins) : status;
 }
 
-/* Bins from which drift is estimated: those below have power of the window's main lobe.
- */
+/* Bins of which drift is estimated: Hann's window spreads the level of the record over
+ * those below.  In 36 records that drift, 5 to 96 kHz, 895, 878, 894, 912 and 913 of 1004
+ * particles are claimed rightly with the end at 16, 24, 32, 48 and 64. */
 enum { DRIFT_FIRST = 3, DRIFT_END = 32 };
 
 /* Power at frequency k / LONGEST of the sum of independent steps of variance 1. */
@@ -246,7 +247,8 @@ static double find_drift(const double *power, int segments)
 {
 	double drift = 0, without = INFINITY, with = INFINITY;
 
-	/* A low-pass of a lower corner cannot be told from drift. */
+	/* A low-pass of a lower corner cannot be told from drift, and one of a higher
+	 * corner is white. */
 	for (double corner = 2 * DRIFT_FIRST; corner <= 2 * DRIFT_END; corner *= 1.25) {
 		double found = 0, deviance;
 

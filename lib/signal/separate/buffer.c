@@ -125,10 +125,10 @@ enum num_status buffer_start(
 	const struct whitening *w = &c->whitening;
 	size_t taps = 2 * (size_t)w->half + 1;
 
+	b->mean = mean;
 	b->scale = scale;
 	b->fed = b->white = b->flat = b->clean;
 	b->hold = w->tap && whitening_removes_mean(w);
-	b->mean = mean;
 	tones_track_start(&b->tones, c->tones, c->omega, b->flat, c->tone_hop);
 	if (!w->tap)
 		return NUM_OK;

@@ -26,7 +26,7 @@ struct buffer {
 	int lost; /* 1: the converter has not measured all of them */
 	long long begin, white, flat, clean;
 	double mean, scale; /* to be subtracted, and divided by */
-	int hold;           /* 1: the last value continues the record */
+	int hold;           /* 1: the first and last values continue it, see whiten.h */
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
