@@ -66,6 +66,7 @@ static struct option {
 	{ "noiserise", 1 }, /* noise at the end over noise at the beginning */
 	{ "crosstalk", 0 }, /* share of either channel on the other */
 	{ "clip", 0 },      /* limit, V; 0: none */
+	{ "behind", 0 },    /* white noise behind the limit, over that before it */
 	{ "bubbles", 0 },   /* events per second */
 	{ "shocks", 0 },    /* ... */
 	{ "impulses", 0 },  /* ... */
@@ -674,6 +675,8 @@ static void spoil(double *x, long N, unsigned char *masked)
 			x[k] = x[k] > 0 ? clip : -clip;
 			masked[k] = 1;
 		}
+		if (get("behind") > 0)
+			x[k] += get("behind") * noise_at((double)k / 2 / rate) * normal();
 		if (step > 0)
 			x[k] = step * round(x[k] / step);
 		if (k % 2 == 1 && (double)k / 2 > get("still") * (double)N) {
@@ -709,7 +712,8 @@ static void note_masked(struct event *e, long N, const unsigned char *masked)
 static void make_slopes(struct event *e)
 {
 	double tau = e->time[1] - e->time[0], h = 1e-3 * e->duration,
-	       sigma = noise_at(e->time[0]), rho = get("common");
+	       sigma = noise_at(e->time[0]) * hypot(1, get("behind")),
+	       rho = get("common");
 	long last;
 	size_t n;
 

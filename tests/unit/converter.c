@@ -46,6 +46,49 @@ static int hide(struct converter *c, unsigned char *hidden)
 	return sum;
 }
 
+/* Samples from which on the converter saturates in a record of sines of 1 to 2 V, all of
+ * which are beyond a limit of 0.8 V (0: none) with this noise behind it; 0: no limit. */
+static double found_limit(double limit, double behind, double step, uint64_t seed)
+{
+	static double work[2 * N];
+	static unsigned char hidden[N];
+	struct converter c = { .run = 0 };
+	double z[2];
+
+	for (uint64_t i = 0; i < N; i++) {
+		double peak = 1 + fmod(0.618 * floor((double)i / 700), 1);
+
+		philox_normal2(seed, 0, RNG_NOISE, i, z);
+		x[i] = peak * sin(2 * M_PI * (double)i / 700) + 0.03 * z[0];
+		if (limit > 0)
+			x[i] = clipped(x[i], limit);
+		x[i] += behind * z[1];
+		if (step > 0)
+			x[i] = step * round(x[i] / step);
+	}
+	return converter_find_blurred(&c, x, 1, hidden, N, work) && c.blurred[0]
+		       ? c.from[0]
+		       : 0;
+}
+
+static void test_blurred(void)
+{
+	static const double behind[] = { 1e-5, 1e-3, 0.01, 0.03 };
+	static const double steps[] = { 0, 1e-4, 0.01, 0.05, 0.2 };
+
+	/* The band has all of the noise, and no more than is given away by its margin. */
+	for (size_t k = 0; k < sizeof behind / sizeof *behind; k++) {
+		double from = found_limit(0.8, behind[k], 0, 11 + k);
+
+		ok(from < 0.8 - 1.5 * behind[k] && from > 0.8 - 12 * behind[k] - 0.02,
+			"a limit of 0.8 V with noise of %g V behind it begins at %g V",
+			behind[k], from);
+	}
+	for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+		ok(found_limit(0, 0.03, steps[k], 21 + k) == 0,
+			"sines of unlike size in steps of %g V have no limit", steps[k]);
+}
+
 int main(void)
 {
 	static const double steps[] = { 0, 1e-4, 0.01, 0.05, 0.2 };
@@ -83,5 +126,6 @@ int main(void)
 			"100 missing samples in steps of %g V are hidden, and held",
 			steps[k]);
 	}
+	test_blurred();
 	return tap_done();
 }

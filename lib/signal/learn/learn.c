@@ -630,13 +630,23 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
  * three describe, 12 of 21 rows are wrong. */
 enum { FEWEST = 6 };
 
-/* 1 if what was learned needs no other attempt.  A shape corrected until no example is
- * one pulse may be another one's half.  Where whitening takes most of the power of a
- * pulse, one taken from the record is compared with the known ones. */
-static int is_enough(int taken, const struct calibration *c)
+/* 1 if the converter has not measured all samples that are learned from. */
+static int is_hidden(const struct calibrate_par *par, const struct calibration *c, size_t n)
 {
-	return learn_describes(c) &&
-	       (taken ? !c->whitening.tap : !c->corrected || c->isolated > 0);
+	const unsigned char *hidden[2];
+
+	learn_hidden(par, c, hidden);
+	return hidden[0] && (memchr(hidden[0], 1, n) || memchr(hidden[1], 1, n));
+}
+
+/* 1 if what was learned needs no other attempt.  A shape corrected until no example is
+ * one pulse may be another one's half.  A pulse taken from the record is compared with
+ * the known ones where whitening takes most of its power, and where the largest pulses
+ * are clipped: it is from smaller ones, whose noise shows in the larger ones. */
+static int is_enough(int taken, int hidden, const struct calibration *c)
+{
+	return learn_describes(c) && (taken ? !c->whitening.tap && !hidden
+					    : !c->corrected || c->isolated > 0);
 }
 
 /* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with
@@ -650,6 +660,7 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 	const struct calibration first = *c;
 	const int taken = found && found->shape;
 	const int any = par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
+	const int hidden = is_hidden(par, c, n);
 	const int last = taken && found->alone               ? TAKEN
 			 : found && any && !c->whitening.tap ? SINGLE
 							     : KNOWN;
@@ -682,7 +693,7 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 		} else {
 			shape_free(other.shape);
 		}
-		if (status == SEPARATE_OK && is_enough(k == TAKEN, c))
+		if (status == SEPARATE_OK && is_enough(k == TAKEN, hidden, c))
 			break;
 	}
 	return status;

@@ -3,9 +3,9 @@
 #include <math.h>
 
 /* A limit must have been seen OFTEN times, and TIMES as often as the next value: in a
- * parabola quantised to a few steps, the top occurs 1 / (sqrt 2 - 1) = 2.4 times as often
- * as the step below it. */
-static const double OFTEN = 8, TIMES = 4;
+ * parabola quantised to a few steps, the top occurs ROUND = 1 / (sqrt 2 - 1) times as
+ * often as the step below it. */
+static const double OFTEN = 8, TIMES = 4, ROUND = 1 + M_SQRT2;
 
 /* Probability below which a run of equal values was not measured. */
 static const double RARELY = 1e-9;
@@ -38,7 +38,88 @@ static int is_at(const struct converter_limit *l, double x)
 
 int converter_saturates(const struct converter *c, double x)
 {
-	return is_at(&c->limit[0], x) || is_at(&c->limit[1], -x);
+	return is_at(&c->limit[0], x) || is_at(&c->limit[1], -x) ||
+	       (c->blurred[0] && x >= c->from[0]) || (c->blurred[1] && -x >= c->from[1]);
+}
+
+/* Of x[0..n) those in a band at the top, and those in the next band. */
+static void count(const double *x, size_t n, double top, double width, double in[2])
+{
+	in[0] = in[1] = 0;
+	for (size_t i = 0; i < n; i++) {
+		in[0] += x[i] > top - width;
+		in[1] += x[i] > top - 2 * width && x[i] <= top - width;
+	}
+}
+
+/* Copies the m samples beyond half of the way from the mean to the largest one, and the
+ * peak of each of the e excursions that they make. */
+static void excursions(const double *x, double sign, const unsigned char *hidden,
+	size_t n, double half, double *beyond, size_t *m, double *peak, size_t *e)
+{
+	int inside = 0;
+
+	*m = *e = 0;
+	for (size_t i = 0; i < n; i++) {
+		double v = sign * x[i];
+
+		if (hidden[i])
+			continue;
+		if (v > half) {
+			beyond[(*m)++] = v;
+			*e += !inside;
+			peak[*e - 1] = inside ? fmax(peak[*e - 1], v) : v;
+		}
+		inside = v > half;
+	}
+}
+
+/* Where a limit begins: half a width below the band at the top that holds most samples
+ * beyond ROUND times those of the next band.  No band is narrower than the step from the
+ * largest value to the next one, so that neither is empty because values are rounded.
+ * work: 2 n. */
+static int find_blurred(const double *x, double sign, const unsigned char *hidden,
+	size_t n, double *work, double *from)
+{
+	double sum = 0, top = -INFINITY, next = -INFINITY, shown = 0, middle, most = 0;
+	double *peak = work + n;
+	size_t m, e;
+
+	for (size_t i = 0; i < n; i++) {
+		double v = sign * x[i];
+
+		if (hidden[i])
+			continue;
+		if (v != top)
+			next = fmax(next, fmin(v, top));
+		top = fmax(top, v);
+		sum += v;
+		shown++;
+	}
+	middle = sum / shown;
+	excursions(x, sign, hidden, n, (middle + top) / 2, work, &m, peak, &e);
+	for (double width = fmax(top - next, ldexp(top - middle, -16));
+		(double)e >= OFTEN && width < (top - middle) / 4; width *= 1.1) {
+		double samples[2], peaks[2];
+
+		count(work, m, top, width, samples);
+		count(peak, e, top, width, peaks);
+		if (peaks[0] < OFTEN || peaks[0] <= TIMES * peaks[1] ||
+			samples[0] - ROUND * samples[1] <= most)
+			continue;
+		most = samples[0] - ROUND * samples[1];
+		*from = top - 1.5 * width;
+	}
+	return most > 0;
+}
+
+int converter_find_blurred(struct converter *c, const double *x, double sign,
+	const unsigned char *hidden, size_t n, double *work)
+{
+	for (int side = 0; side < 2; side++)
+		c->blurred[side] = find_blurred(
+			x, side ? -sign : sign, hidden, n, work, &c->from[side]);
+	return c->blurred[0] || c->blurred[1];
 }
 
 size_t converter_next(struct converter *c, double *sample)

@@ -1,8 +1,9 @@
 /* converter.h - samples that a converter has not measured: at its limits, or repeated
  *
- * A limit shows as an extreme value that comes back more often than the next one; a
- * dropout as a run of equal values longer than those of the rest of the record make
- * likely.  A zeroed converter has seen nothing.
+ * A limit shows as an extreme value that comes back more often than the next one, or, if
+ * noise was added behind it, as extreme values that crowd; a dropout as a run of equal
+ * values longer than those of the rest of the record make likely.  A zeroed converter has
+ * seen nothing.
  */
 #ifndef SIGNAL_CONVERTER_H
 #define SIGNAL_CONVERTER_H
@@ -16,6 +17,8 @@ struct converter_limit {
 
 struct converter {
 	struct converter_limit limit[2]; /* largest; least, its sign changed */
+	int blurred[2];                  /* 1: a limit with noise behind it is known */
+	double from[2];                  /* it begins here; sign as above */
 	double last, samples, repeats;
 	size_t run; /* samples up to the last one that are equal */
 	int stands; /* 1: too many to have been measured */
@@ -25,7 +28,11 @@ struct converter {
  * Returns how many of the last samples, including this one, turn out not to have been
  * measured; those returned before do not count again. */
 size_t converter_next(struct converter *c, double *x);
-/* 1 if x is a limit, by all samples so far. */
+/* 1 if x is at a limit, by all samples so far. */
 int converter_saturates(const struct converter *c, double x);
+/* Looks in sign x[0..n), hidden[0..n) apart, for limits with noise behind them, such as
+ * that of an amplifier before the converter; 1 if there are.  work: 2 n. */
+int converter_find_blurred(struct converter *c, const double *x, double sign,
+	const unsigned char *hidden, size_t n, double *work);
 
 #endif

@@ -70,15 +70,15 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 	return NUM_OK;
 }
 
-/* 1 if a component of a sample in the buffers, turned by this cosine and sine, is at its
- * limit. */
-static int saturates(
-	struct separate *s, int sensor, size_t i, double along, double across)
+int separate_saturates(struct separate *s, int sensor, size_t i)
 {
-	double sign = sign_of(s, sensor), x = sign * s->buffer[sensor].x[i], v;
+	double sign = sign_of(s, sensor), x = sign * s->buffer[sensor].x[i], v, along,
+	       across;
 
 	if (!has_quadrature(s))
 		return converter_saturates(converter_of(s, sensor, 0), x);
+	along = cos(s->par.angle);
+	across = sin(s->par.angle);
 	v = sign * s->buffer[sensor + 2].x[i];
 	return converter_saturates(converter_of(s, sensor, 0), along * x - across * v) ||
 	       converter_saturates(converter_of(s, sensor, 1), along * v + across * x);
@@ -86,10 +86,20 @@ static int saturates(
 
 void separate_review(struct separate *s)
 {
-	double along = cos(s->par.angle), across = sin(s->par.angle);
-
 	for (int sensor = 0; sensor < 2; sensor++)
 		for (size_t i = 0; i < s->buffer[sensor].n; i++)
-			if (saturates(s, sensor, i, along, across))
+			if (separate_saturates(s, sensor, i))
 				buffer_hide(&s->buffer[sensor], i);
+}
+
+/* Components that were turned have no limit of their own. */
+int separate_find_blurred(struct separate *s, size_t n, double *work)
+{
+	int found = 0;
+
+	for (int sensor = 0; sensor < 2 && !has_quadrature(s); sensor++)
+		found |= converter_find_blurred(converter_of(s, sensor, 0),
+			s->buffer[sensor].x, sign_of(s, sensor), s->buffer[sensor].hidden,
+			n, work);
+	return found;
 }

@@ -189,8 +189,13 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 
 /* Appends n frames to the buffers. */
 enum num_status separate_append(struct separate *s, const double *x, size_t n);
+/* 1 if a component of sample i of the buffers is at its limit. */
+int separate_saturates(struct separate *s, int sensor, size_t i);
 /* Hides the samples at a limit of the converter that only later samples have revealed. */
 void separate_review(struct separate *s);
+/* Looks for limits with noise behind them in the n oldest samples; 1 if there are.
+ * work: 2 n. */
+int separate_find_blurred(struct separate *s, size_t n, double *work);
 /* Negates the samples of sensor 2 if its polarity is now known to be that of sensor 1
  * reversed; those appended later are negated as they come. */
 void separate_align_signs(struct separate *s);
