@@ -577,8 +577,8 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
 	    stuck = o->predict && predict_bank(o->predict) &&
 		    bank_stuck(predict_bank(o->predict)),
-	    stopped = !stuck &&
-		      plateau_reached(&o->now.course, outlook_options.threshold),
+	    stopped =
+		    !stuck && plateau_reached(&o->now.course, outlook_options.threshold),
 	    alternates = rescaled_alternates(&o->now.scale),
 	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful || stuck ||
 		    stopped || alternates;
