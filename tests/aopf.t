@@ -315,8 +315,29 @@ awk 'BEGIN { srand(7); print "t\ty"
 fails "a sensor at its ceiling" 3 "the last values are equal: the sensor sticks" aopf -y 1 --lives-only ceiling.tsv
 aopf -y 1 --lives-only ceiling.tsv >out 2>err
 near "the life goes on below the ceiling of a sensor" "$(column rul_q50 out | tail -1)" 20 8
-awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv | aopf -y 1 --lives-only >out
+awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv >dither.tsv
+aopf -y 1 --lives-only dither.tsv >out 2>err
 ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 { exit !($4 > 60) }' out
+fails "a sensor at its ceiling with noise behind it" 3 "the values have ceased to approach the threshold" aopf -y 1 --lives-only dither.tsv
+awk '{ print $1 "\t" (NR == 1 ? $2 : 1 - $2) }' dither.tsv >floor.tsv
+fails "a sensor at its floor" 3 "the values have ceased to approach the threshold" aopf -y 0 --lives-only floor.tsv
+# slower RATE: the readings of a unit whose rate is RATE from row 60 on
+slower() {
+	awk -v rate="$1" 'BEGIN { srand(8); print "t\ty"; for (t = 0; t < 90; t++)
+		print t "\t" (t < 60 ? t / 100 : 0.6 + rate * (t - 60) / 100) + 0.01 * (rand() - 0.5) }'
+}
+is "wear at a third of its rate goes on" "$(slower 0.33 | aopf -y 1 --lives-only 2>&1 >out)" ""
+is "a unit without wear has not stopped" "$(awk 'BEGIN { srand(9); print "t\ty"; for (t = 0; t < 400; t++) print t "\t" rand() / 50 }' |
+	aopf -y 1 --direction up --lives-only 2>&1 >out)" ""
+# burst BY: straight wear with 20 values that are BY too large
+burst() {
+	awk -v by="$1" 'BEGIN { srand(3); print "t\ty"; for (t = 0; t < 80; t++)
+		print t "\t" t / 100 + 0.01 * (rand() - 0.5) + (t >= 55 && t < 75 ? by : 0) }'
+}
+for by in -0.8 0.3 2; do
+	burst $by | aopf -y 1 --lives-only >out 2>err
+	near "20 values $by off are forgotten" "$(column rul_q50 out | tail -1)" 20 3
+done
 # A rate that trebles in quiet data is followed, and not taken for outliers or jumps.
 awk 'BEGIN { srand(5); print "t\ty"
 	for (t = 0; t < 97; t++) print t "\t" (t < 76 ? t / 200 : 0.38 + (t - 76) / 40) + 0.002 * (rand() - 0.5) }' |

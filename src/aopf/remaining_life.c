@@ -10,6 +10,7 @@
 #include "life/prior/fleet.h"
 #include "life/score/metrics.h"
 #include "life/trend/passage.h"
+#include "life/trend/plateau.h"
 #include "life/trend/predict.h"
 #include "life/trend/rescaled.h"
 #include "num/checksum.h"
@@ -124,6 +125,7 @@ struct outlook {
 	struct outlook_state {
 		int started, direction;
 		struct rescaled scale;
+		struct plateau course;
 		double factor, range, rescaled; /* of the values, or of the counter, from
 						 * about this time on; 0: none */
 		double first, last, clock;      /* times */
@@ -381,6 +383,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 		if (!bank_event(predict_bank(o->predict), e->what))
 			o->now.early = fmax(o->now.early, e->t);
 		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
+		o->now.course = (struct plateau){ 0 };
 		o->now.events++;
 	}
 	o->now.heeded = in->t;
@@ -398,6 +401,8 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	}
 	now->clock = in->clock;
 	heed_events(o, in);
+	if (!isnan(in->y))
+		plateau_add(&now->course, in->clock, in->y);
 	if (in->clock - now->first >= skip / timeunit())
 		predict_add(o->predict, in->clock, in->y,
 			filtered ? filtered->state + outlook_options.zero : NAN,
@@ -572,9 +577,11 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
 	    stuck = o->predict && predict_bank(o->predict) &&
 		    bank_stuck(predict_bank(o->predict)),
+	    stopped =
+		    !stuck && plateau_reached(&o->now.course, outlook_options.threshold),
 	    alternates = rescaled_alternates(&o->now.scale),
 	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful || stuck ||
-		    alternates;
+		    stopped || alternates;
 
 	if (doubtful)
 		warn("%s%sno life is predicted after the last rows: their unit or the gain "
@@ -587,6 +594,10 @@ int outlook_settle(const struct outlook *o, const char *unit)
 	if (stuck)
 		warn("%s%sthe last values are equal: the sensor sticks or is at the end of its "
 		     "range, and the lives continue the wear before",
+			unit, *unit ? ": " : "");
+	if (stopped)
+		warn("%s%sthe values have ceased to approach the threshold: the wear rests, or "
+		     "the sensor is at the end of its range",
 			unit, *unit ? ": " : "");
 	if (o->now.range > 0)
 		warn("%s%sthe last %d values at time %g go on from 0 where those before "

@@ -323,6 +323,9 @@ static int check_state(
 	if (bank && bank_stuck(bank))
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
+	else if (s->pair && plateau_reached(&s->course, pair_limit(s->pair)))
+		status = doubt(out, "the gap has ceased to grow",
+			": the wear rests, or the sensor is at the end of its range");
 	if (bank && bank_recedes(bank))
 		status = doubt(out, "the gap closes", ": no life ends");
 	if (rule == RATE_MEAN &&

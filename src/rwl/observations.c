@@ -197,6 +197,8 @@ int state_next(struct observations *s)
 	s->gap_error = (pair_gap(s->pair, s->quantity, value + error) -
 			       pair_gap(s->pair, s->quantity, value - error)) /
 		       2;
+	if (s->quantity != PAIR_DEBRIS && !isnan(s->gap))
+		plateau_add(&s->course, time, s->gap);
 	return 1;
 }
 

@@ -17,6 +17,7 @@
 #include "io/tables.h"
 #include "life/grey/noise.h"
 #include "life/pair/pair.h"
+#include "life/trend/plateau.h"
 #include "life/trend/rescaled.h"
 
 /* Values of the options. */
@@ -38,15 +39,16 @@ struct observations {
 	double scale, time_scale;           /* to SI */
 	double debris;                      /* volume of the particles so far */
 	long rows;
-	long passed;          /* particles without a diameter */
-	long beyond;          /* values that suggest another unit */
-	struct rescaled seen; /* values, to find out whether their unit changes */
-	struct noise noise;   /* of volumes */
-	double lowest;        /* volume, no more than 0, */
-	long lowest_line;     /* and where it is */
-	double first_t;       /* of the first row */
-	double t, gap, value; /* latest row, SI; gap and value NAN if missing */
-	double gap_error;     /* standard error of the gap */
+	long passed;           /* particles without a diameter */
+	long beyond;           /* values that suggest another unit */
+	struct rescaled seen;  /* values, to find out whether their unit changes */
+	struct plateau course; /* of the gap, without particles */
+	struct noise noise;    /* of volumes */
+	double lowest;         /* volume, no more than 0, */
+	long lowest_line;      /* and where it is */
+	double first_t;        /* of the first row */
+	double t, gap, value;  /* latest row, SI; gap and value NAN if missing */
+	double gap_error;      /* standard error of the gap */
 };
 
 void state_open(struct observations *s, const char *file, const struct pair *pair);

@@ -268,7 +268,7 @@ static void scale_trend(const struct bank *b, struct trend *tr, double times)
 
 static void begin_regime(const struct bank *b, struct trend *tr, float growth)
 {
-	tr->onset = b->age;
+	tr->onset = (float)b->age;
 	tr->growth = growth;
 	if (tr->changes < 255)
 		tr->changes++;
@@ -580,14 +580,17 @@ int bank_repaired(const struct bank *b)
 
 int bank_stuck(const struct bank *b)
 {
-	return b->stuck > fmax(HELD - 1, 2 * b->freed) && isfinite(b->quantum);
+	return b->stuck > fmax(LIKELY - 1, 2 * b->freed) && isfinite(b->quantum);
 }
 
 double chance_of_jump(const struct bank *b)
 {
 	double jump = damage_of(b, b->held[0].y) - b->level;
 
-	return is_repaired(b) ? 1 : b->n_held / (HELD * pow(1 + jump * jump, 2));
+	if (is_repaired(b))
+		return 1;
+	return b->n_held < LIKELY ? b->n_held / (LIKELY * pow(1 + jump * jump, 2))
+				  : b->n_held / (b->n_held + 1.0);
 }
 
 /* 1 if the machine was idle in a long gap of step: running does not explain the
@@ -688,7 +691,7 @@ static int goes_on(const struct bank *b, const struct row *r)
 
 static void accept_held(struct bank *b);
 
-static void consider(struct bank *b, const struct row *r)
+static void consider(struct bank *b, const struct row *r, int most)
 {
 	if (goes_on(b, r)) {
 		b->counts.outliers += (unsigned long)b->n_held;
@@ -697,12 +700,13 @@ static void consider(struct bank *b, const struct row *r)
 		return;
 	}
 	b->held[b->n_held++] = *r;
-	if (b->n_held == HELD)
+	if (b->n_held >= most)
 		accept_held(b);
 }
 
 /* Takes the first of the rows held back as the level after a jump, and the others as
- * ever, because that may not have been the last one. */
+ * ever, because that may not have been the last one; but no burst within is waited for.
+ */
 static void accept_held(struct bank *b)
 {
 	struct row held[HELD];
@@ -713,7 +717,7 @@ static void accept_held(struct bank *b)
 	b->n_held = 0;
 	take(b, &held[0]);
 	for (int k = 1; k < n; k++)
-		consider(b, &held[k]);
+		consider(b, &held[k], LIKELY);
 }
 
 void bank_add(struct bank *b, double t, double y)
@@ -739,7 +743,7 @@ void bank_add(struct bank *b, double t, double y)
 	r.t -= b->idle;
 	face_loads(b, &r);
 	leave_idle_time(b, &r);
-	consider(b, &r);
+	consider(b, &r, HELD);
 }
 
 struct bank *bank_accepting(const struct bank *b)
@@ -750,7 +754,9 @@ struct bank *bank_accepting(const struct bank *b)
 	if (!copy)
 		return NULL;
 	memcpy(copy, b, size);
-	accept_held(copy);
+	do
+		accept_held(copy);
+	while (is_repaired(copy));
 	return copy;
 }
 

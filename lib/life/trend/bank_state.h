@@ -9,7 +9,8 @@
 
 enum {
 	KINDS = 6,
-	HELD = 8, /* rows held back at most */
+	HELD = 32,  /* rows held back at most: bursts that are waited for */
+	LIKELY = 8, /* of them, those that are rather a new regime */
 	RATES = BANK_LOADS + 1
 };
 
@@ -27,7 +28,7 @@ struct trend {
 	double sum; /* discounted sum of squared standardised innovations */
 	double score;
 	double weight; /* the weights of all trends sum to 1 */
-	double onset;  /* of the growth, age */
+	float onset;   /* of the growth, age */
 	float growth;  /* of the rate since then; 0: none */
 	float offset;  /* log weight of a particle when it was drawn */
 	float lagged;  /* sum of products of innovations with recent before them */

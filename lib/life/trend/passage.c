@@ -205,7 +205,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 		.future = future_of(shape_of(b, tr->shape)) };
 
 	p.lasts = (b->age + ahead) / (1 + tr->changes);
-	p.regime = fmin(p.lasts, b->age + ahead - tr->onset);
+	p.regime = fmax(0, fmin(p.lasts, b->age + ahead - tr->onset));
 	p.repairs = (b->repairs - 1) / (b->age + ahead);
 	p.gain = b->healed / b->repairs / (target - b->level);
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
@@ -238,7 +238,7 @@ static double normal_above(double m, const struct chance *c)
 	return above < UNLIKELY ? NAN : -normal_quantile(c->u[1] * above);
 }
 
-int bank_recedes(const struct bank *b)
+static int recedes(const struct bank *b)
 {
 	double sum = 0, line[LINE];
 
@@ -252,6 +252,15 @@ int bank_recedes(const struct bank *b)
 			sum += tr->weight;
 	}
 	return sum > 0.95;
+}
+
+int bank_recedes(const struct bank *b)
+{
+	struct bank *other = chance_of_jump(b) > 0.5 ? bank_accepting(b) : NULL;
+	int answer = recedes(other ? other : b);
+
+	bank_free(other);
+	return answer;
 }
 
 /* Time to the passage if the regime changes once more. */

@@ -21,7 +21,9 @@
  * probably so the more there are: this share of the draws, an eighth for each row (as
  * doc/benchmarks.md tells), is of a copy of the bank that has accepted them.  It falls
  * with the jump j to them, in units of the distance from D = 0 to the threshold, as
- * 1 / (1 + j^2)^2.  After three rows running on the healthy side, a repair, all are.
+ * 1 / (1 + j^2)^2.  From eight on it is n / (n + 1), since none of n rows has ended it
+ * (Laplace's rule of succession).  After three rows running on the healthy side, a
+ * repair, all are.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);
@@ -46,7 +48,8 @@ double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *chances,
 	double now, double level, double *life);
 
-/* 1 if the damage nearly certainly does not grow in trends with 95 % of the weight. */
+/* 1 if the damage nearly certainly does not grow in trends with 95 % of the weight, after
+ * the rows held back if they are probably a new regime. */
 int bank_recedes(const struct bank *b);
 
 #endif
