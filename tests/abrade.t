@@ -35,6 +35,8 @@ is "each realisation has its own gap" "$(column realisation s.tsv | tr '\n' ' ')
 abrade --gap 15um --hardness 2 --friction 0 two.tsv >out 2>err
 is "a hardness without its unit gives a hint" "$(grep -c 'is 2GPa meant' err)" 1
 fails "a body without its surface" 2 '\--body requires --surface' abrade --gap 15um --hardness 2GPa --friction 0 --body 2 two.tsv
+fails "a seed where nothing is drawn" 2 '\--seed requires --iso or --surface' \
+	abrade --gap 15um --hardness 2GPa --friction 0 --seed 2 two.tsv
 fails "more load than they can carry" 1 'carry at most .* the surfaces touch' \
 	abrade --load 1kN --hardness 2GPa --friction 0 two.tsv
 

@@ -145,7 +145,8 @@ static void add_gradients(
 		int n;
 		lanes a, b, c, d, gx, gy;
 
-		/* To the pair of cells of which one, or the cell after them, is loaded. */
+		/* To the pair of cells of which one, or the cell after them, is loaded.
+		 */
 		if (loaded > x + 2)
 			x = (loaded - 1) / 2 * 2;
 		if (loaded == nx || x + 1 == nx)

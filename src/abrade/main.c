@@ -108,6 +108,9 @@ static void check_options(int operands)
 		die(EXIT_USAGE, "--particles: the table goes to standard output unless "
 				"--surface is given");
 	particles_check(operands, area, inlet);
+	if (opt_given("seed") && !opt_given("iso") && !surface_path)
+		die(EXIT_USAGE,
+			"--seed requires --iso or --surface: nothing else is drawn");
 }
 
 static void check_rigid(const struct abrasion_par *par)
