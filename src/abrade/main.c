@@ -299,9 +299,15 @@ int main(int argc, char **argv)
 		doubtful = 1;
 	}
 	if (surface_path) {
-		size_t left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
-			particles_apart(source), cmd);
+		size_t again,
+			left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
+				particles_apart(source), cmd, &again);
 
+		if (again > 0) {
+			warn("%s: %zu records are of the realisation of an earlier one, such as its steps: all its grooves are cut into each of them",
+				surface_path, again);
+			doubtful = 1;
+		}
 		if (left > 0) {
 			warn("%zu grooves are left out: %s has no record of their realisation",
 				left, surface_path);
