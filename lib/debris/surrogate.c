@@ -141,23 +141,11 @@ static void add_gradients(
 	const double *p, const double *q, size_t nx, struct gradients *sum)
 {
 	for (size_t x = 0; x + 1 < nx; x += 2) {
-		size_t loaded = lesser(lanes_next(p, x, nx), lanes_next(q, x, nx));
-		int n;
-		lanes a, b, c, d, gx, gy;
+		int n = x + 2 < nx ? 2 : 1;
+		lanes a = lanes_load(p + x, n), b = lanes_load(p + x + 1, n),
+		      c = lanes_load(q + x, n), d = lanes_load(q + x + 1, n);
+		lanes gx = (b + d) - (a + c), gy = (d - b) + (c - a);
 
-		/* To the pair of cells of which one, or the cell after them, is loaded.
-		 */
-		if (loaded > x + 2)
-			x = (loaded - 1) / 2 * 2;
-		if (loaded == nx || x + 1 == nx)
-			break;
-		n = x + 2 < nx ? 2 : 1;
-		a = lanes_load(p + x, n);
-		b = lanes_load(p + x + 1, n);
-		c = lanes_load(q + x, n);
-		d = lanes_load(q + x + 1, n);
-		gx = (b + d) - (a + c);
-		gy = (d - b) + (c - a);
 		lanes_add(&sum->xx, gx * gx, n);
 		lanes_add(&sum->xy, gx * gy, n);
 		lanes_add(&sum->yy, gy * gy, n);
