@@ -119,7 +119,7 @@ static void place_windows(const struct match *m, const double *coil,
 {
 	double precision = 1 / (m->width_error * m->width_error),
 	       s2 = m->time_error * m->time_error;
-	double arrival[LAYOUT_COILS], width[LAYOUT_COILS];
+	double arrival[LAYOUT_COILS] = { 0 }, width[LAYOUT_COILS] = { 0 };
 
 	for (int k = 0; k < m->coils; k++) {
 		arrival[k] = m->own[i] * (coil[k] - coil[0]) +
