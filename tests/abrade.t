@@ -35,6 +35,8 @@ is "each realisation has its own gap" "$(column realisation s.tsv | tr '\n' ' ')
 abrade --gap 15um --hardness 2 --friction 0 two.tsv >out 2>err
 is "a hardness without its unit gives a hint" "$(grep -c 'is 2GPa meant' err)" 1
 fails "a body without its surface" 2 '\--body requires --surface' abrade --gap 15um --hardness 2GPa --friction 0 --body 2 two.tsv
+fails "a seed where nothing is drawn" 2 '\--seed requires --iso or --surface' \
+	abrade --gap 15um --hardness 2GPa --friction 0 --seed 2 two.tsv
 fails "more load than they can carry" 1 'carry at most .* the surfaces touch' \
 	abrade --load 1kN --hardness 2GPa --friction 0 two.tsv
 
@@ -122,6 +124,9 @@ sed 's/^\([01]\)\t/2\1\t/' two.tsv >other.tsv
 cat two.tsv other.tsv >four.two
 is "two ensembles of other numbers are joined" \
 	"$(abrade --gap 15um --hardness 2GPa --friction 0 four.two | grep -vc '^[#r]')" 6
+roughgen --points 64 --length 100um --sq 0.5um --corr 10um | cat - h.nrrd >steps.nrrd
+fails "two records of one realisation" 3 'steps.nrrd: 1 records are of the realisation of an earlier one' \
+	abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 9um --surface steps.nrrd p.tsv
 fails "grooves of a realisation that has no surface" 3 '1 grooves are left out: h.nrrd has no record' \
 	abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --slide 1um --surface h.nrrd seventh.tsv
 abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --surface h.nrrd p.tsv >worn.nrrd 2>err

@@ -11,6 +11,10 @@ contacts 1 130 >fitted.nrrd
 debrisfit --yield 250MPa:500MPa --friction 0:0.5 --stats stats fitted.nrrd >surrogate.tsv
 is 'a surrogate is fitted' "$? $(column surfaces stats)" '0 130'
 
+cat fitted.nrrd fitted.nrrd >twice.nrrd
+fails 'surfaces that are given twice' 1 'record 131 has the pressure of record 1: want each surface once' \
+	debrisfit --yield 250MPa:500MPa twice.nrrd
+
 contacts 9 30 >hidden.nrrd
 debrisgen --yield 355MPa --friction 0.3 --summary full.steps hidden.nrrd >full.tsv
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats \

@@ -264,6 +264,11 @@ is "a periodic surface has no edge" "$(summary edge_load) $(cat warning)" "0 "
 perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
 	"sizes: 2 16 16\nspacings: 1e-5 1e-5 1e-5\nfields:=height m, pressure Pa\nboundary:=periodic\n\n";
 	for my $y (0 .. 15) { print pack("d<2", 0, $y == 8 ? 1e9 : 0) for 0 .. 15 }' >ridge.nrrd
+for c in "tolerance 1e-6" "max-iterations 9" "solver pk" "multiply mlms"; do
+	# shellcheck disable=SC2086 # words
+	fails "--${c% *} of a contact that is read" 2 "--${c% *} has no effect: a single step takes the pressure" \
+		debrisgen -Y 355MPa --$c ridge.nrrd
+done
 debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
 is "a particle that crosses a periodic grid gives exit status 3, one warning and no length" \
 	"$? $(grep -c '1 of 1 particles connect to themselves' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"

@@ -191,6 +191,13 @@ is "a step that shed nothing counts if the summary has it" \
 fails "steps after the last of the summary" 1 'first.tsv has no step after 2$' \
 	debrisstat --step 3 --summary both.tsv first.tsv
 fails "a truncation without limits" 2 '\--truncated requires --diameter' debrisstat --truncated first.tsv
+for c in "bin 1um:fits" "aspects 1,2:sizes" "growth step:steps" "confidence 0.9:aspects" "bootstrap 9:sizes" \
+	"truncated --diameter 1um:1mm:aspects"; do
+	# shellcheck disable=SC2086 # words
+	fails "--${c%% *} of another output" 2 "--${c%% *} has no effect with --output ${c##*:}" \
+		debrisstat --output ${c##*:} --${c%:*} first.tsv
+done
+fails "a seed where nothing is drawn" 2 '\--seed requires --bootstrap or --compare' debrisstat --seed 2 first.tsv
 fails "a depth without a comparison" 2 'depth requires --compare' debrisstat --depth 1um one.tsv
 debrisstat --compare one.tsv one.tsv >against.tsv
 is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"

@@ -74,7 +74,7 @@ size_t record_points(const struct record *r)
 	return (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
 }
 
-static double *new_data(struct record *r)
+static double *new_data(struct record *r, int zeroed)
 {
 	size_t n = record_points(r);
 	double *data;
@@ -82,12 +82,14 @@ static double *new_data(struct record *r)
 	if (n != r->spare_points)
 		free_spares(r);
 	if (r->spares == 0) {
-		data = xcalloc(n, sizeof *data);
+		data = zeroed ? xcalloc(n, sizeof *data)
+			      : xrealloc(NULL, n, sizeof *data);
 		pages_large(data, n * sizeof *data);
 		return data;
 	}
 	data = r->spare[--r->spares];
-	memset(data, 0, n * sizeof *data);
+	if (zeroed)
+		memset(data, 0, n * sizeof *data);
 	return data;
 }
 
@@ -103,7 +105,7 @@ void record_name_field(struct record *r, const char *name, const char *unit)
 void record_new_field(struct record *r, const char *name, const char *unit)
 {
 	record_name_field(r, name, unit);
-	r->data[r->nfields - 1] = new_data(r);
+	r->data[r->nfields - 1] = new_data(r, 0);
 }
 
 double *record_add(struct record *r, const char *name, const char *unit)
@@ -111,8 +113,9 @@ double *record_add(struct record *r, const char *name, const char *unit)
 	int i = record_find(r, name);
 
 	if (i < 0) {
-		record_new_field(r, name, unit);
-		i = r->nfields - 1;
+		i = r->nfields;
+		record_name_field(r, name, unit);
+		r->data[i] = new_data(r, 1);
 	}
 	return r->data[i];
 }

@@ -36,9 +36,9 @@ size_t record_points(const struct record *r);
 int record_find(const struct record *r, const char *name);
 /* A zeroed new field, or the existing one of that name. */
 double *record_add(struct record *r, const char *name, const char *unit);
-/* A zeroed field of that name, which must not exist yet. */
+/* A field of that name, which must not exist yet, whose samples are still to be set. */
 void record_new_field(struct record *r, const char *name, const char *unit);
-/* The same without samples. */
+/* The same without room for samples. */
 void record_name_field(struct record *r, const char *name, const char *unit);
 /* Drops a field. */
 void record_drop(struct record *r, const char *name);

@@ -3,71 +3,23 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALVINGS = 30 };             /* of the step: 1e-9 of the extent */
-static const double deviations = 3; /* of a window to either side: 99.7 % of arrivals */
-
-/* Variance of the arrival at a position beyond the coils that determine it, s2. */
-static double predicted_variance(const struct layout_par *par, const double *coil,
-	int coils, const struct bound *b, double at)
-{
-	double slowness = b->velocity / (par->bound.velocity * par->bound.velocity);
-	double mean = 0;
-
-	for (int k = 0; k < coils; k++)
-		mean += coil[k] / coils;
-	/* The arrival at the mean position is independent of the velocity. */
-	return b->time * b->time +
-	       (pow(at - mean, 2) - pow(coil[0] - mean, 2)) * slowness * slowness;
-}
-
-/* The windows at the coils of a layout, s.  Other particles are in at least one of them
- * during their union, which is between the widest of them and their sum. */
-struct windows {
-	double sum, widest;
-};
-
-static void search_window(struct windows *w, double width)
-{
-	w->sum += width;
-	w->widest = fmax(w->widest, width);
-}
+enum { HALVINGS = 30 }; /* of the step: 1e-9 of the extent */
 
 void layout_evaluate(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out)
 {
-	double window = traffic_window(&par->traffic), single;
-	struct windows first = { 0, 0 }, width = { 0, 0 };
-	struct bound b;
-	int next;
+	struct match m;
 
-	bound_closed(&par->bound, coil, 1, &b);
-	single = b.time * b.time;
-	for (int k = 0; k < coils; k = next) {
-		double all, narrow;
-
-		for (next = k + 1; next < coils && !(coil[next] > coil[k]);)
-			next++;
-		if (next == coils)
-			break;
-		/* From the coils so far; both arrivals are measured. */
-		bound_closed(&par->bound, coil, next, &b);
-		narrow = 2 * deviations *
-			 sqrt(predicted_variance(par, coil, next, &b, coil[next]) +
-				 single);
-		all = (coil[next] - coil[k]) * window + 2 * deviations * sqrt(2 * single);
-		search_window(&first, k == 0 ? all : fmin(all, narrow));
-		search_window(&width, fmin(all, narrow));
-	}
+	match_begin(&m, par, coils);
 	bound_closed(&par->bound, coil, coils, &out->bound);
-	out->unique = traffic_unique(&par->traffic, first.sum);
-	out->by_width = traffic_unique(&par->traffic, width.sum);
-	out->unique_high = traffic_unique(&par->traffic, first.widest);
-	out->by_width_high = traffic_unique(&par->traffic, width.widest);
+	out->unique = match_unique(&m, coil, 0);
+	out->by_width = match_unique(&m, coil, 1);
 }
 
 /* One search. */
 struct search {
 	const struct layout_par *par;
+	struct match match;
 	int coils;
 	double extent, least;
 	double best[LAYOUT_COILS];
@@ -77,13 +29,13 @@ struct search {
 
 static int try(struct search *s, const double *coil)
 {
-	struct layout found;
+	struct bound b;
 
 	s->evaluated++;
-	layout_evaluate(s->par, coil, s->coils, &found);
-	if (found.by_width < s->least || !(found.bound.velocity < s->error))
+	bound_closed(&s->par->bound, coil, s->coils, &b);
+	if (!(b.velocity < s->error) || !match_reaches(&s->match, coil, s->least))
 		return 0;
-	s->error = found.bound.velocity;
+	s->error = b.velocity;
 	memcpy(s->best, coil, (size_t)s->coils * sizeof *coil);
 	return 1;
 }
@@ -127,9 +79,14 @@ static int improve(struct search *s, double step)
 enum num_status layout_search(const struct layout_par *par, int coils, double extent,
 	double least, int steps, double *coil, struct layout *out)
 {
-	struct search s = { par, coils, extent, least, { 0 }, INFINITY, 0 };
+	struct search s = { .par = par,
+		.coils = coils,
+		.extent = extent,
+		.least = least,
+		.error = INFINITY };
 	double trial[LAYOUT_COILS] = { 0 }, step = extent / steps;
 
+	match_begin(&s.match, par, coils);
 	try_all(&s, trial, 1, 0, steps);
 	if (!isfinite(s.error))
 		return NUM_DOMAIN;

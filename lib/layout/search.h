@@ -2,11 +2,7 @@
  *
  * The standard error of the velocity is smallest if the sum of squares of the positions
  * is largest, with half of the coils at either end; matching requires short distances
- * between coils.  A pulse is matched from each position to the next: at the second coil
- * within the window of the traffic, narrowed by the duration of the first pulse; at
- * later coils within the prediction of the coils so far.  A window extends three standard
- * errors to either side: two particles of equal velocity whose arrivals differ by less
- * cannot be told apart.
+ * between coils (match.h).
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
  *	layout_evaluate(&par, coil, 2, &evaluated);
@@ -15,25 +11,15 @@
 #ifndef LAYOUT_SEARCH_H
 #define LAYOUT_SEARCH_H
 
-#include "layout/bound.h"
-#include "layout/traffic.h"
+#include "layout/match.h"
 #include "num/status.h"
-
-struct layout_par {
-	struct bound_par bound;
-	struct traffic traffic;
-};
 
 struct layout {
 	struct bound bound; /* closed form */
-	/* Bounds of the probability of an unambiguous match, equal for two positions. */
-	double unique, unique_high;
-	/* The same if the width of the first pulse is used. */
-	double by_width, by_width_high;
-	long evaluated; /* number of layouts evaluated */
+	double unique;      /* probability of an unambiguous match */
+	double by_width;    /* the same if the width of the first pulse is used */
+	long evaluated;     /* number of layouts evaluated */
 };
-
-enum { LAYOUT_COILS = 16 };
 
 /* Positions ascend from the first; at most LAYOUT_COILS. */
 void layout_evaluate(

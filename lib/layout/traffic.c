@@ -4,12 +4,11 @@
 enum { RINGS = 256 };                 /* of the section: 1e-5 in probability */
 static const double near_wall = 0.99; /* of the radius, as particles are drawn */
 
-/* Slowness of the particles at the share u of the flow. */
-static double slowness(const struct traffic *t, double u)
+double traffic_slowness(const struct traffic *t, double share, double along)
 {
-	double r = pipe_position(&t->pipe, near_wall * t->pipe.bore / 2, u);
+	double r = pipe_position(&t->pipe, near_wall * t->pipe.bore / 2, share);
 
-	return 1 / pipe_velocity(&t->pipe, r);
+	return (1 + along * t->spread) / pipe_velocity(&t->pipe, r);
 }
 
 double traffic_alone(const struct traffic *t, double zone)
@@ -23,7 +22,7 @@ double traffic_alone(const struct traffic *t, double zone)
 		double rest = 1 - (i + 0.5) / RINGS;
 
 		weight[i] = 2 * rest / RINGS;
-		s[i] = slowness(t, 1 - rest * rest);
+		s[i] = traffic_slowness(t, 1 - rest * rest, 0);
 		mean += weight[i] * s[i];
 	}
 	for (int i = 0; i < RINGS; i++)
@@ -33,9 +32,7 @@ double traffic_alone(const struct traffic *t, double zone)
 
 double traffic_window(const struct traffic *t)
 {
-	double fast = 1 / pipe_velocity(&t->pipe, 0), slow = slowness(t, 1);
-
-	return slow * (1 + t->spread) - fast * (1 - t->spread);
+	return traffic_slowness(t, 1, 1) - traffic_slowness(t, 0, -1);
 }
 
 double traffic_unique(const struct traffic *t, double width)

@@ -25,6 +25,10 @@ struct traffic {
 /* Mean over the particles of exp(-arrivals (T + mean T)), T = zone / v. */
 double traffic_alone(const struct traffic *t, double zone);
 
+/* Slowness, s/m, of particles inside whose radius this share of the flow passes, and
+ * which differ from the oil by this share of the spread, -1 to 1. */
+double traffic_slowness(const struct traffic *t, double share, double along);
+
 /* Width of the window of transit times over a distance of 1 m, s; errors of measurement
  * are not included. */
 double traffic_window(const struct traffic *t);

@@ -108,6 +108,9 @@ static void check_options(int operands)
 		die(EXIT_USAGE, "--particles: the table goes to standard output unless "
 				"--surface is given");
 	particles_check(operands, area, inlet);
+	if (opt_given("seed") && !opt_given("iso") && !surface_path)
+		die(EXIT_USAGE,
+			"--seed requires --iso or --surface: nothing else is drawn");
 }
 
 static void check_rigid(const struct abrasion_par *par)
@@ -296,9 +299,15 @@ int main(int argc, char **argv)
 		doubtful = 1;
 	}
 	if (surface_path) {
-		size_t left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
-			particles_apart(source), cmd);
+		size_t again,
+			left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
+				particles_apart(source), cmd, &again);
 
+		if (again > 0) {
+			warn("%s: %zu records are of the realisation of an earlier one, such as its steps: all its grooves are cut into each of them",
+				surface_path, again);
+			doubtful = 1;
+		}
 		if (left > 0) {
 			warn("%zu grooves are left out: %s has no record of their realisation",
 				left, surface_path);

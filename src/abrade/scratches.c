@@ -18,6 +18,8 @@ struct scratch {
 
 static struct scratch *list;
 static size_t n, room;
+static long *seen; /* realisations of the records so far */
+static size_t records, seen_room;
 
 void scratches_add(long realisation, double diameter, double depth, double section)
 {
@@ -34,8 +36,21 @@ static double way(const struct scratch *s, double length)
 	return whole > 0 ? length * s->section / whole : 0;
 }
 
+/* Whether an earlier record is of this realisation. */
+static int is_again(long realisation)
+{
+	size_t i = 0;
+
+	while (i < records && seen[i] != realisation)
+		i++;
+	if (room_for(&seen, &seen_room, records + 1, sizeof *seen))
+		die(EXIT_RUN, "out of memory");
+	seen[records] = realisation;
+	return i < records++;
+}
+
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
-	int apart, const char *cmd)
+	int apart, const char *cmd, size_t *again)
 {
 	size_t left = 0;
 	struct fields_in *in = fields_open(path, NULL);
@@ -43,6 +58,7 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 	struct record r = { 0 };
 	double laps = 0; /* the most */
 
+	*again = 0;
 	while (fields_read(in, &r)) {
 		double *z = record_need(&r, "height", 1, in), lx = r.nx * r.dx,
 		       ly = r.ny * r.dy;
@@ -50,6 +66,7 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 		if (r.nz != 1)
 			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
 				fields_name(in), fields_count(in), r.nz);
+		*again += (size_t)is_again(r.realisation);
 		for (size_t i = 0; i < n; i++) {
 			struct groove g = { .length = way(&list[i], length),
 				.diameter = list[i].diameter,
@@ -89,5 +106,6 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 			fields_name(in), laps);
 	fields_close(in);
 	free(list);
+	free(seen);
 	return left;
 }

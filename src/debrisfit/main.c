@@ -7,6 +7,7 @@
 #include "common/surrogate_table.h"
 #include "debris/debris.h"
 #include "io/fields.h"
+#include "num/checksum.h"
 #include "num/room.h"
 #include <math.h>
 #include <stdlib.h>
@@ -30,6 +31,8 @@ static const struct prog prog = { "debrisfit",
 
 static struct surrogate_sample *sample;
 static size_t count, room;
+static uint64_t *seen; /* checksums of the pressures so far */
+static size_t seen_room;
 
 /* A value of the range for each record: multiples of an irrational step fill it evenly.
  */
@@ -79,6 +82,24 @@ static void add_samples(const struct fields_in *in, long surface, int nx,
 		}
 }
 
+/* Intervals hold for surfaces that are independent. */
+static void check_new(const struct fields_in *in, const struct record *r,
+	const double *pressure, long surface)
+{
+	uint64_t sum =
+		checksum(pressure, record_points(r) * sizeof *pressure, CHECKSUM_START);
+
+	for (long i = 0; i < surface; i++)
+		if (seen[i] == sum)
+			die(EXIT_RUN,
+				"%s: record %ld has the pressure of record %ld: want each surface once",
+				fields_name(in), fields_count(in),
+				fields_count(in) - surface + i);
+	if (room_for(&seen, &seen_room, (size_t)surface + 1, sizeof *seen))
+		die(EXIT_RUN, "out of memory");
+	seen[surface] = sum;
+}
+
 static void take_record(const struct fields_in *in, const struct record *r, long surface)
 {
 	const double *pressure = record_need(r, "pressure", 1, in);
@@ -92,6 +113,7 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	struct surrogate_contact contact;
 	size_t n;
 
+	check_new(in, r, pressure, surface);
 	if (!f)
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(in),
 			fields_count(in), r->nx, r->ny);
@@ -160,6 +182,7 @@ int main(int argc, char **argv)
 	stats_set("within", (double)report.within);
 	stats_set("rms", report.rms);
 	free(sample);
+	free(seen);
 	free(cmd);
 	record_free(&r);
 	fields_close(in);

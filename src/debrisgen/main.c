@@ -5,6 +5,7 @@
 #include "cli/stats.h"
 #include "common/contact_options.h"
 #include "io/fields.h"
+#include "num/pages.h"
 #include "outputs.h"
 #include "quick.h"
 #include "wear_steps.h"
@@ -13,6 +14,8 @@
 /* Share of the load on the outermost cells that is worth a warning: what they carry in
  * full contact of 80 x 80 cells. */
 static const double EDGE_LOAD = 0.05;
+/* What the default model takes on 2048 x 2048 cells; more comes in small pages. */
+enum { RESERVE = 256 << 20 };
 /* From half of the load on, the contact is mostly with what the grid has cut off. */
 static const double EDGE_MOST = 0.5;
 
@@ -247,6 +250,7 @@ int main(int argc, char **argv)
 	struct record r = { 0 };
 	struct run run = { 0 };
 
+	pages_reserve(RESERVE);
 	press_check();
 	wearing_check();
 	run.in = fields_open(argv[first], NULL);

@@ -148,6 +148,30 @@ struct wearing {
 	long steep_step;
 };
 
+/* Whether the contact of a step (from 1 in this run) is solved here. */
+static int solves(const struct wearing *w, long step)
+{
+	return step > 1 || w->counterface || law == ARCHARD;
+}
+
+int wearing_takes_heights(const struct wearing *w)
+{
+	return solves(w, w->steps) || richardson;
+}
+
+/* Options of a contact that is not solved here. */
+static void check_solver(const struct wearing *w)
+{
+	static const char *const of_solver[] = { "tolerance", "max-iterations", "solver",
+		"multiply", NULL };
+
+	for (int k = 0; of_solver[k] && !wearing_takes_heights(w); k++)
+		if (opt_given(of_solver[k]))
+			die(EXIT_USAGE,
+				"--%s has no effect: a single step takes the pressure that it reads",
+				of_solver[k]);
+}
+
 struct wearing *wearing_open(const struct fields_in *in, long steps)
 {
 	struct wearing *w = xcalloc(1, sizeof *w);
@@ -159,23 +183,13 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	if (counterface_check())
 		w->counterface = counterface_open(shear);
+	check_solver(w);
 	if (quick_asked()) {
 		if (steps > 1)
 			die(EXIT_USAGE, "--surrogate describes one step: want --steps 1");
 		w->quick = quick_open();
 	}
 	return w;
-}
-
-/* Whether the contact of a step (from 1 in this run) is solved here. */
-static int solves(const struct wearing *w, long step)
-{
-	return step > 1 || w->counterface || law == ARCHARD;
-}
-
-int wearing_takes_heights(const struct wearing *w)
-{
-	return solves(w, w->steps) || richardson;
 }
 
 int wearing_richardson(void)

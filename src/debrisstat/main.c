@@ -455,6 +455,25 @@ static void print_aspects(const struct ensemble *e, const char *cmd)
 	table_done(t);
 }
 
+/* Dies if an option was given that the output does not depend on. */
+static void check_effects(void)
+{
+	static const struct {
+		const char *word;
+		int output[4];
+	} used[] = { { "truncated", { [FITS] = 1, [STEPS] = 1, [SIZES] = 1 } },
+		{ "growth", { [FITS] = 1 } }, { "confidence", { [FITS] = 1 } },
+		{ "bootstrap", { [FITS] = 1 } }, { "bin", { [SIZES] = 1 } },
+		{ "aspects", { [ASPECTS] = 1 } } };
+
+	for (size_t k = 0; k < sizeof used / sizeof *used; k++)
+		if (opt_given(used[k].word) && !used[k].output[output])
+			die(EXIT_USAGE, "--%s has no effect with --output %s",
+				used[k].word, outputs[output]);
+	if (opt_given("seed") && !bootstrap && !other_path)
+		die(EXIT_USAGE, "--seed requires --bootstrap or --compare");
+}
+
 static void check_options(void)
 {
 	if (other_path && (output != FITS || summary_path || realisations))
@@ -462,6 +481,7 @@ static void check_options(void)
 			"--compare excludes --output, --summary and --realisations");
 	opt_require("compare", "depth");
 	opt_require("diameter", "truncated");
+	check_effects();
 	if (other_path && !bootstrap)
 		bootstrap = COMPARED;
 	if (other_path && !opt_given("confidence"))

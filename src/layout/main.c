@@ -210,8 +210,7 @@ static void put_layout(
 		detection(par, samples, n), evaluated.bound.time,
 		evaluated.bound.velocity, evaluated.bound.diameter * diameter,
 		par->traffic.arrivals, traffic_alone(&par->traffic, par->bound.zone),
-		evaluated.unique, evaluated.by_width, evaluated.unique_high,
-		evaluated.by_width_high };
+		evaluated.unique, evaluated.by_width };
 	table_put_row(t, row, (int)(sizeof row / sizeof *row));
 	stats_add("layouts", 1);
 	free(where);
@@ -250,10 +249,9 @@ int main(int argc, char **argv)
 	for (int i = 0; i < coils.n; i++)
 		read_coils(coils.v[i], coil);
 	cmd = opt_cmd(NULL, NULL);
-	t = table_create(NULL, cmd, "m m m m m/s 1 1 1 s m/s m 1/s 1 1 1 1 1",
+	t = table_create(NULL, cmd, "m m m m m/s 1 1 1 s m/s m 1/s 1 1 1",
 		"coils extent zone zone_worst velocity samples snr detection se_time se_velocity "
-		"se_diameter arrivals p_alone p_unique p_unique_width "
-		"p_unique_high p_unique_width_high");
+		"se_diameter arrivals p_alone p_unique p_unique_width");
 	for (int i = 0; i < coils.n; i++)
 		put_layout(t, &par, coil, read_coils(coils.v[i], coil));
 	if (best) {
