@@ -31,14 +31,14 @@
  * 52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
  * Outliers, repairs and idle times: a row that no trend predicts is held back, beyond a
- * Student's t as rare as five standard deviations.  If a later row agrees with them,
- * it is dropped as an outlier.  If 32 have been held, the level is estimated again and,
- * unless three rows running lie on the healthy side (a repair), the rates are as well;
- * so it is within those 32 after eight.  Until then more and more of the lives are those
- * of a copy that has done so, see passage.h.  After a gap of more than 3.5 usual ones, as
- *seen from a random time, and 3.5 of those that rows at a constant ratio of their ages
- *would have, the machine may have been idle; the next observation decides, if it does not
- *show a repair.
+ * Student's t as rare as five standard deviations.  If a later row agrees with them, it
+ * is dropped as an outlier.  If 32 have been held, the level is estimated again and,
+ * unless three rows running lie on the healthy side (a repair), the rates are as well; so
+ * it is within those 32 after eight.  Until then more and more of the lives are those of
+ * a copy that has done so, see passage.h.  After a gap of more than 3.5 usual ones, as
+ * seen from a random time, and 3.5 of those that rows at a constant ratio of their ages
+ * would have, the machine may have been idle; the next observation decides, if it does
+ * not show a repair.
  *
  * Equal readings: where successive values are equal, readings are taken to be rounded to
  * the common divisor of the steps between them, and the noise to be at least that of
