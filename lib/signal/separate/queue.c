@@ -102,7 +102,8 @@ static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 		if (q[i].evidence.pulse && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
-			if (fmax(a[m - 1].shape, a[m - 1].astray) > a[m - 1].pair)
+			if (fmax(fmax(a[m - 1].shape, a[m - 1].half), a[m - 1].astray) >
+				a[m - 1].pair)
 				s->counters.misfits++;
 			else
 				s->counters.together++;

@@ -6,6 +6,9 @@
  * follows another closely, and from the amplitudes: two that add up to this one, against
  * one of them.
  *
+ * Two pulses may have been fitted to one because its shape is slightly wrong.  They are
+ * halves if pulses follow others within as short a gap more often than particles do.
+ *
  * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
  * are more of them than particles as small come to lie beside larger ones at random.
  *

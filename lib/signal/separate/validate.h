@@ -41,12 +41,13 @@ struct evidence {
 	 * the range searched, and the variance of this; 0: not known.  flow_var: least
 	 * variance of such delays in the flow. */
 	double off, off_var, flow_var;
-	/* Set by together_test(): probabilities of being a pair, an error of the shape of
-	 * a larger pulse, not of the flow, and any of these; */
-	double pair, shape, astray, wrong;
+	/* Set by together_test(): probabilities of being a pair, half of a pulse, an
+	 * error of the shape of a larger one, not of the flow, and any of these; */
+	double pair, half, shape, astray, wrong;
 	/* logarithms of the amplitude and of that of the largest pulse that it overlaps;
 	 * 1: it is much smaller than that; 1: it is by itself. */
 	double size, beside;
+	double gap; /* to the nearer neighbour; INFINITY: far */
 	int weak, alone;
 };
 
