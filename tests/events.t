@@ -87,6 +87,17 @@ is "nothing learned at first: particles behind it are found" \
 duet behind.au >found.tsv 2>err
 is "nothing passed over: the record is believed" "$?: $(cat err)" "0: "
 
+# The last of a record is learned from, too, if it has half as many samples: an amplifier
+# that settles for a second hides what the sensors have in common.
+sensorsim --uniform 80um:120um --number 50 --duration 7s --gap 30ms --snr 30dB --lag 0.2ms:0.5ms --seed 6 |
+	sigconvert -o text - | grep -v '^#' | awk -F '\t' -v OFS='\t' '/^[0-9]/ { for (i = 2; i <= 3; i++)
+	$i += (5 - i) * exp(-$1 / 0.3) } { print }' | sigconvert --from text >settles.au
+duet settles.au >found.tsv 2>err
+is "a record that settles is doubtful" $? 3
+like "a record that settles: it is said" "$(cat err)" '^duet: settles.au: nothing could be learned from its first'
+at_least "a record that settles: particles behind it are found" "$(verdicts found.tsv alone)" 15
+is "a record that settles: no others are claimed" "$(verdicts found.tsv overlap)" 0
+
 # shellcheck disable=SC2086
 sensorsim $half --bubbles 0.5 --shocks 0.5 --transients 0.2 --seed 5 --truth truth.tsv >s.au
 duet s.au >found.tsv 2>err

@@ -493,8 +493,9 @@ enum separate_status separate_learn(struct separate *s)
 	int first = 1, found, again;
 	size_t n, from;
 
-	while (!s->calibrated &&
-		s->buffer[0].n >= (s->ended && first ? 1 : s->par.learn)) {
+	while (!s->calibrated && s->buffer[0].n >= (!s->ended      ? s->par.learn
+							   : first ? 1
+								   : half)) {
 		enum separate_status status;
 
 		if (s->buffer[0].n < s->awaited && !s->ended)
@@ -530,7 +531,7 @@ enum separate_status separate_learn(struct separate *s)
 		give_reason(s, status, found);
 		if (status != SEPARATE_NO_LAG || found)
 			s->nothing[0].octaves = 0;
-		if (s->buffer[0].n < s->par.learn)
+		if (s->buffer[0].n < (s->ended ? half : s->par.learn))
 			break;
 		if (pass_over(s, half, found) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
