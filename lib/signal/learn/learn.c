@@ -631,7 +631,8 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 enum { FEWEST = 6 };
 
 /* 1 if the converter has not measured all samples that are learned from. */
-static int is_hidden(const struct calibrate_par *par, const struct calibration *c, size_t n)
+static int is_hidden(
+	const struct calibrate_par *par, const struct calibration *c, size_t n)
 {
 	const unsigned char *hidden[2];
 
@@ -645,8 +646,8 @@ static int is_hidden(const struct calibrate_par *par, const struct calibration *
  * are clipped: it is from smaller ones, whose noise shows in the larger ones. */
 static int is_enough(int taken, int hidden, const struct calibration *c)
 {
-	return learn_describes(c) && (taken ? !c->whitening.tap && !hidden
-					    : !c->corrected || c->isolated > 0);
+	return learn_describes(c) &&
+	       (taken ? !c->whitening.tap && !hidden : !c->corrected || c->isolated > 0);
 }
 
 /* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with
