@@ -650,6 +650,9 @@ static int is_enough(int taken, int hidden, const struct calibration *c)
 	       (taken ? !c->whitening.tap && !hidden : !c->corrected || c->isolated > 0);
 }
 
+/* Work of comparing known shapes, over that of learning by the pulse taken. */
+static const double COMPARED = 1;
+
 /* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with
  * the first that describes the examples: by a pulse taken from the record, which groups
  * of nearly equal composition mislead, by those of sensor.h, with half of the work that
@@ -677,6 +680,9 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 		other.penalised = status == SEPARATE_OK ? c->penalised : INFINITY;
 		if (k == KNOWN && last == SINGLE)
 			part.most = 0.5 * (c->work + par->most);
+		if (k == KNOWN && status == SEPARATE_OK && is_enough(1, 0, c))
+			part.most = fmin(
+				part.most, c->work + COMPARED * (c->work - first.work));
 		now = learn_by(&part, y1, y2, n, low, k == KNOWN && taken ? NULL : found,
 			k, &other);
 		c->work = other.work;
