@@ -228,9 +228,10 @@ static enum separate_status learn_limited(struct separate *s, size_t n, double m
 	struct converter was[CHANNELS_MAX], limited[CHANNELS_MAX];
 	struct calibration below = { 0 };
 	unsigned char *known[2] = { s->buffer[0].hidden, s->buffer[1].hidden };
-	unsigned char *flags = malloc(2 * n), *hidden[2] = { flags, flags + n };
+	unsigned char *hidden[2] = { malloc(n), malloc(n) };
 	double *work = malloc(2 * n * sizeof *work);
-	enum separate_status status = flags && work ? SEPARATE_OK : SEPARATE_MEMORY;
+	enum separate_status status =
+		hidden[0] && hidden[1] && work ? SEPARATE_OK : SEPARATE_MEMORY;
 	int describes = 0;
 
 	memcpy(was, s->converter, sizeof was);
@@ -243,7 +244,8 @@ static enum separate_status learn_limited(struct separate *s, size_t n, double m
 		most = describes ? TWICE * below.work : most - below.work;
 	}
 	free(work);
-	free(flags);
+	free(hidden[0]);
+	free(hidden[1]);
 	memcpy(limited, s->converter, sizeof limited);
 	memcpy(s->converter, was, sizeof was);
 	if (status != SEPARATE_MEMORY)
