@@ -77,7 +77,9 @@ static void excursions(const double *x, double sign, const unsigned char *hidden
 /* Where a limit begins: half a width below the band at the top that holds most samples
  * beyond ROUND times those of the next band.  No band is narrower than the step from the
  * largest value to the next one, so that neither is empty because values are rounded.
- * work: 2 n. */
+ * Without the half, 10 to 17 of 60 rows are doubted in four records with a limit of 0.8 V
+ * and noise of 20 or 30 mV behind it; widths in steps of sqrt 2 miss a limit in two of
+ * them.  work: 2 n. */
 static int find_blurred(const double *x, double sign, const unsigned char *hidden,
 	size_t n, double *work, double *from)
 {

@@ -69,9 +69,13 @@ static int count_followers(const struct evidence *a, size_t i, size_t n)
  * of the other sign, or one of the two is weak. */
 static double gap_before(const struct evidence *a, size_t i, size_t n)
 {
-	const struct evidence *p = a + i - 1, *q = a + i;
+	const struct evidence *p, *q;
 
-	if (i == 0 || i == n || p->group != q->group || p->weak || q->weak ||
+	if (i == 0 || i == n)
+		return INFINITY;
+	p = &a[i - 1];
+	q = &a[i];
+	if (p->group != q->group || p->weak || q->weak ||
 		p->amplitude * q->amplitude < 0 || q->time - p->time > NEAR)
 		return INFINITY;
 	return q->time - p->time;
