@@ -178,11 +178,12 @@ column_of() {
 	awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ c) k = i; next }
 	{ print $k }'
 }
-# How much of its buffers a short record touches depends on how the pipe is read.
+# How much of its buffers a short record touches depends on how the pipe is read, and the
+# first pulses decide what is learned from: a long record may need less.
 m1=$({ memory 20; memory 20; memory 20; } | sort -n | tail -n 1)
 m2=$(memory 200)
-scene "200 s instead of 20 s" "memory grows by less than a tenth" 1 0.1 \
-	"$(awk -v a="$m1" -v b="$m2" 'BEGIN { print b / a }')"
+scene "200 s instead of 20 s" "memory grows by less than a tenth" 0 0.1 \
+	"$(awk -v a="$m1" -v b="$m2" 'BEGIN { print (b > a ? b / a - 1 : 0) }')"
 scene "200 s" "400 particles" 400 0 "$(score matched)"
 scene "200 s" "arrivals to 0.05 samples" 0 5e-6 "$(score time1_rms)"
 # --- four channels: permeability and skin depth
