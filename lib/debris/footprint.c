@@ -311,45 +311,53 @@ static void check(
 	f->squares += off * off / (loss.change * loss.change);
 }
 
+/* Cell i of m evenly spaced ones of n, from a start in [0, 1). */
+static double place_of(size_t i, double start, double n, size_t m)
+{
+	return floor(((double)i + start) * n / (double)m);
+}
+
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
-	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 }, first = 0,
-	       change = 0;
+	double n = (double)r->cells, sum = 0, bends = 0, depth[3] = { 0 }, change = 0;
 	double part = fmax(sqrt(n), SHARE * n / (double)f->nodes);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 	/* The same place in every region would be deeper, or less deep, than others: the
 	 * multiples of the golden ratio fill [0, 1) evenly. */
 	double start = (double)(r - f->list) * 0.6180339887498949;
+	double before, at, after, squares = 0;
 
 	start -= floor(start);
 	turn_rows(f, cell, r->cells);
-	for (size_t i = 0; i < m; i++) {
-		size_t at = (size_t)(((double)i + start) * n / (double)m);
-		struct loss loss = loss_below(f, f->node[cell[at]]);
-		double bend;
+	at = place_of(0, start, n, m);
+	before = -1 - at;
+	for (size_t i = 0; i < m; i++, before = at, at = after) {
+		struct loss loss = loss_below(f, f->node[cell[(size_t)at]]);
+		double bend, weight;
 
-		check(f, f->node[cell[at]], loss, n / (double)m);
+		after = i + 1 < m ? place_of(i + 1, start, n, m) : 2 * n - 1 - at;
+		weight = (after - before) / 2;
+		check(f, f->node[cell[(size_t)at]], loss, weight);
 		depth[2] = depth[1];
 		depth[1] = depth[0];
 		depth[0] = loss.depth;
-		change += loss.change;
-		first = i == 0 ? depth[0] : first;
 		bend = depth[0] - 2 * depth[1] + depth[2];
-		sum += depth[0];
-		squares += i > 1 ? bend * bend : 0;
+		bends += i > 1 ? bend * bend : 0;
+		sum += weight * depth[0];
+		change += weight * loss.change;
+		squares += (weight - 1) * (weight - 1);
 	}
-	r->volume = r->area * sum / (double)m;
-	r->change = r->area * change / (double)m;
-	/* A mean at even distances is off by what varies from one to the next, where
-	 * independent depths have second differences of six times their variance, and by
-	 * the trend over the distance of the start from that of the middle. */
+	r->volume = r->area * sum / n;
+	r->change = r->area * change / n;
+	/* By the trapezoidal rule over the order of the rows, with mirrored ends, a cell
+	 * left out has the mean depth of its neighbours in the sample: second differences
+	 * tell the error even where steps of one and two cells alternate.  Those of
+	 * independent depths are six times their variance. */
 	if (m < r->cells) {
-		double varies = squares / (6 * (double)(m - 2) * (double)m);
-		double trend = (depth[0] - first) / (double)(m - 1);
+		double variance = bends / (6 * (double)(m - 2));
 
-		r->error = r->area *
-			   sqrt((1 - (double)m / n) * (varies + trend * trend / 12));
-		r->freedom = (double)(m - 1); /* m - 2 differences and the trend */
+		r->error = r->area * sqrt(variance * (n - (double)m + squares)) / n;
+		r->freedom = (double)(m - 2);
 	}
 }
 

@@ -84,7 +84,7 @@ static void add_to(struct sum *sum, const struct footprint *f)
 }
 
 /* By how much the 90 % quantile of Student's distribution exceeds that of the normal one
- * (Abramowitz and Stegun, 26.7.5; 2 % less than it is with three degrees of freedom). */
+ * (Abramowitz and Stegun, 26.7.5; 5 % less than it is with two degrees of freedom). */
 static double student(double freedom)
 {
 	const double x = 1.6449, x2 = x * x;
