@@ -117,6 +117,7 @@ is "what is no single particle by its verdict is left out and reported" \
 is "doubtful particles are taken in" \
 	"$(abrade --gap 9um --hardness 2GPa --friction 0.1 --doubtful duet.tsv 2>err | column diameter /dev/stdin | tr '\n' ' ')" "1e-05 1.2e-05 "
 printf 'diameter\trealisation\n1e-5\t7\n' >seventh.tsv
+printf 'diameter\tstep\n1e-5\tx\n' >bad.tsv
 cat two.tsv two.tsv >twice.tsv
 fails "two ensembles with the same numbers" 1 'realisation 0 stands in two parts' \
 	abrade --gap 15um --hardness 2GPa --friction 0 twice.tsv
@@ -127,6 +128,28 @@ is "two ensembles of other numbers are joined" \
 roughgen --points 64 --length 100um --sq 0.5um --corr 10um | cat - h.nrrd >steps.nrrd
 fails "two records of one realisation" 3 'steps.nrrd: 1 records are of the realisation of an earlier one' \
 	abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 9um --surface steps.nrrd p.tsv
+# Three steps of one surface: a groove is there from the step of its particle on.
+roughgen --points 64 --length 100um --sq 0.5um --corr 10um --crown 2um | bemcontact --load 1N --young 210GPa |
+	debrisgen --yield 1GPa --friction 0.3 --young 210GPa --steps 3 --surface steps.nrrd >/dev/null 2>&1
+printf 'step\tdiameter\taspect\trealisation\n2\t11e-6\t3\t0\n1\t10e-6\t3\t0\n2\t9.9e-6\t3\t0\n' >steps.tsv
+abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 90um --surface steps.nrrd --particles worn.tsv \
+	--summary s.tsv steps.tsv >worn.nrrd 2>err
+is "the steps of a surface are no doubt" "$? $(cat err)" "0 "
+for k in 1 2 3; do
+	near "up to step $k a surface loses the volume of its particles" \
+		"$(awk -v a="$(mean steps.nrrd $((2 * k - 1)))" -v b="$(mean worn.nrrd $k)" 'BEGIN { printf "%.9g", (a - b) * 1e-8 * 1e18 }')" \
+		"$(awk -F '\t' -v k=$k '$2 <= k && /^[0-9]/ { s += $9 } END { printf "%.9g", s * 1e18 }' worn.tsv)" 1e-6
+done
+is "the summary has a row for each step" "$(column step s.tsv | tr '\n' ' ')$(column particles s.tsv | tr '\n' ' ')" "1 2 1 2 "
+abrade --load 0.1N --hardness 6GPa,2GPa --friction 0.1 --summary s.tsv steps.tsv >/dev/null
+is "each step has its own gap" "$(column load s.tsv | awk '{ printf "%.6f ", $1 }')" "0.100000 0.100000 "
+sed 's/^2/4/' steps.tsv >late.tsv
+fails "grooves of a step that has no surface" 3 '2 grooves are left out: steps.nrrd has no record of their realisation and step' \
+	abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 90um --surface steps.nrrd late.tsv
+cat steps.nrrd steps.nrrd >steps.twice
+fails "two records of one step" 3 'steps.twice: 3 records are of the realisation and step of an earlier one' \
+	abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 90um --surface steps.twice steps.tsv
+fails "a step that is no number" 1 'line 2: .*step' abrade --gap 9.5um --hardness 6GPa --friction 0.1 bad.tsv
 fails "grooves of a realisation that has no surface" 3 '1 grooves are left out: h.nrrd has no record' \
 	abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --slide 1um --surface h.nrrd seventh.tsv
 abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --surface h.nrrd p.tsv >worn.nrrd 2>err

@@ -59,7 +59,7 @@ static const struct opt opts[] = {
 	{ 0, "particles", OPT_TEXT, UNIT_NONE, &particles_path, 0, 0, "FILE",
 		"with --surface: write the table of particles to FILE", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
-		"write one row per realisation", NULL, 1 },
+		"write one row per gap", NULL, 1 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N",
 		"seed of the random numbers", NULL, 0 },
 	OPT_END,
@@ -67,13 +67,13 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "abrade",
 	"Compute three-body abrasion by hard particles in a gap.", "[file]",
-	"table: diameter [aspect] [realisation], unless --iso",
+	"table: diameter [aspect] [realisation] [step], unless --iso",
 	"table: one row per particle; with --surface fields: height", opts };
 
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
 static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
-static int doubtful;
+static int doubtful, stepped;
 static double rolling, yielding, buried; /* particles */
 
 static struct abrasion_par parameters(void)
@@ -121,9 +121,8 @@ static void check_rigid(const struct abrasion_par *par)
 			par->abrasive);
 }
 
-/* Gap at which the particles of a realisation carry the load. */
-static double find_gap(
-	const struct abrasion_par *par, const struct particles_in *in, long realisation)
+/* Gap at which the particles carry the load. */
+static double find_gap(const struct abrasion_par *par, const struct particles_in *in)
 {
 	double evaluations = 0, carried, found, error;
 
@@ -135,12 +134,12 @@ static double find_gap(
 		die(EXIT_RUN,
 			"realisation %ld: the particles carry at most %g N of %g N: the "
 			"surfaces touch",
-			realisation, carried, load);
+			in->realisation, carried, load);
 	error = carried / load - 1;
 	/* The way a particle moves may change at this very gap. */
 	if (fabs(error) > 1e-6) {
 		warn("realisation %ld: at a gap of %.6g m the load jumps over %g N to %g N",
-			realisation, found, load, carried);
+			in->realisation, found, load, carried);
 		doubtful = 1;
 	}
 	return found;
@@ -178,12 +177,20 @@ struct totals {
 	double load, volume[2], number[ABRASION_MODES];
 };
 
-static void put_particle(long realisation, size_t number, double diameter,
+/* The first columns of both tables. */
+static void put_gap(struct table_out *t, const struct particles_in *in)
+{
+	table_put(t, (double)in->realisation);
+	if (stepped)
+		table_put(t, (double)in->step);
+}
+
+static void put_particle(const struct particles_in *in, size_t number,
 	const struct abrasion *a, const double volume[2])
 {
-	table_put(table, (double)realisation);
+	put_gap(table, in);
 	table_put(table, (double)number);
-	table_put(table, diameter);
+	table_put(table, in->diameter[number]);
 	table_put(table, a->load);
 	table_put(table, a->depth[0]);
 	table_put(table, a->depth[1]);
@@ -191,31 +198,32 @@ static void put_particle(long realisation, size_t number, double diameter,
 	table_put_row(table, volume, 2);
 }
 
-static void put_summary(long realisation, const struct abrasion_par *par,
-	const struct totals *t, size_t n)
+static void put_summary(const struct particles_in *in, const struct abrasion_par *par,
+	const struct totals *t)
 {
 	double per_metre = slide > 0 ? 1 / (area * slide) : NAN;
 
 	if (!summary)
 		return;
-	const double row[] = { (double)realisation, par->gap, t->load, t->load / area,
-		(double)n, t->number[ABRASION_FREE], t->number[ABRASION_REJECTED],
+	const double row[] = { par->gap, t->load, t->load / area, (double)in->n,
+		t->number[ABRASION_FREE], t->number[ABRASION_REJECTED],
 		t->number[ABRASION_ROLLS], t->number[ABRASION_GROOVES],
 		t->number[ABRASION_EMBEDS], t->number[ABRASION_YIELDS],
 		t->number[ABRASION_BURIED], t->volume[0], t->volume[1],
 		t->volume[0] * per_metre, t->volume[1] * per_metre, mean.pressure,
 		cutting * mean.section[0], cutting * mean.section[1] };
 
+	put_gap(summary, in);
 	table_put_row(summary, row, (int)(sizeof row / sizeof *row));
 }
 
-static void run_realisation(const struct particles_in *in, long realisation)
+static void run_gap(const struct particles_in *in)
 {
 	struct abrasion_par par = parameters();
 	struct totals t = { 0 };
 
 	if (!population && isnan(gap))
-		par.gap = find_gap(&par, in, realisation);
+		par.gap = find_gap(&par, in);
 	else
 		par.gap = gap;
 	for (size_t i = 0; i < in->n; i++) {
@@ -233,12 +241,12 @@ static void run_realisation(const struct particles_in *in, long realisation)
 			t.load += a.load;
 		t.number[a.mode]++;
 		if (table)
-			put_particle(realisation, i, in->diameter[i], &a, volume);
+			put_particle(in, i, &a, volume);
 		if (surface_path && a.section[body - 1] > 0)
-			scratches_add(realisation, in->diameter[i], a.depth[body - 1],
-				a.section[body - 1]);
+			scratches_add(in->realisation, in->step, in->diameter[i],
+				a.depth[body - 1], a.section[body - 1]);
 	}
-	put_summary(realisation, &par, &t, in->n);
+	put_summary(in, &par, &t);
 	for (int m = 0; m < ABRASION_MODES; m++)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
@@ -247,15 +255,26 @@ static void run_realisation(const struct particles_in *in, long realisation)
 	buried += t.number[ABRASION_BURIED];
 }
 
+/* A table that begins with the columns of put_gap(). */
+static struct table_out *create(
+	const char *path, const char *cmd, const char *units, const char *columns)
+{
+	char *all_units = xprintf("1 %s%s", stepped ? "1 " : "", units);
+	char *all = xprintf("realisation %s%s", stepped ? "step " : "", columns);
+	struct table_out *t = table_create(path, cmd, all_units, all);
+
+	free(all_units);
+	free(all);
+	return t;
+}
+
 int main(int argc, char **argv)
 {
-	static const char columns[] =
-		"realisation particle diameter load depth1 depth2 mode volume1 volume2";
 	int operand = opt_parse(&prog, argc, argv);
 	struct particles_in in = { 0 };
 	struct abrasion_par par;
 	struct source *source;
-	long realisation, realisations = 0;
+	long gaps = 0;
 	const char *upstream;
 	char *cmd, *side;
 
@@ -270,6 +289,7 @@ int main(int argc, char **argv)
 			gap, population->diameter[0]);
 	source = population ? particles_drawn(population, area, gap, (uint64_t)seed)
 			    : particles_read(argv[operand]);
+	stepped = particles_stepped(source);
 	upstream = particles_upstream(source);
 	cmd = surface_path ? opt_cmd_side(upstream, "particles")
 			   : opt_cmd(upstream, NULL);
@@ -278,39 +298,38 @@ int main(int argc, char **argv)
 	if (surface_path)
 		file_claim_input(surface_path);
 	if (!surface_path || particles_path)
-		table = table_create(particles_path, cmd, "1 1 m N m m 1 m3 m3", columns);
+		table = create(particles_path, cmd, "1 m N m m 1 m3 m3",
+			"particle diameter load depth1 depth2 mode volume1 volume2");
 	free(cmd);
 	cmd = opt_cmd(upstream, NULL);
 	if (summary_path)
-		summary = table_create(summary_path, side,
-			"1 m N Pa 1 1 1 1 1 1 1 1 m3 m3 1 1 Pa 1 1",
-			"realisation gap load pressure particles free rejected "
+		summary = create(summary_path, side,
+			"m N Pa 1 1 1 1 1 1 1 1 m3 m3 1 1 Pa 1 1",
+			"gap load pressure particles free rejected "
 			"rolls grooves embeds yields buried volume1 volume2 "
 			"depth_rate1 depth_rate2 mean_pressure "
 			"mean_depth_rate1 mean_depth_rate2");
 	if (summary && population)
 		find_mean(par);
-	while (particles_next(source, &in, &realisation)) {
-		run_realisation(&in, realisation);
-		realisations++;
-	}
-	if (!isnan(load) && realisations == 0) {
+	for (; particles_next(source, &in); gaps++)
+		run_gap(&in);
+	if (!isnan(load) && gaps == 0) {
 		warn("no particle carries the load of %g N: the surfaces touch", load);
 		doubtful = 1;
 	}
 	if (surface_path) {
 		size_t again,
 			left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
-				particles_apart(source), cmd, &again);
+				particles_apart(source), stepped, cmd, &again);
 
 		if (again > 0) {
-			warn("%s: %zu records are of the realisation of an earlier one, such as its steps: all its grooves are cut into each of them",
-				surface_path, again);
+			warn("%s: %zu records are of the realisation%s of an earlier one: all its grooves are cut into each of them",
+				surface_path, again, stepped ? " and step" : "");
 			doubtful = 1;
 		}
 		if (left > 0) {
-			warn("%zu grooves are left out: %s has no record of their realisation",
-				left, surface_path);
+			warn("%zu grooves are left out: %s has no record of their realisation%s",
+				left, surface_path, stepped ? " and step" : "");
 			doubtful = 1;
 		}
 	}

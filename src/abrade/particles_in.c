@@ -28,7 +28,7 @@ struct opt particles_rows[] = {
 };
 
 struct row {
-	long realisation, part;
+	long realisation, step, part;
 	size_t number;
 	double diameter, aspect;
 };
@@ -36,10 +36,9 @@ struct row {
 struct source {
 	struct row *row;
 	size_t rows, room, at;
-	int apart, shaped;
+	int apart, shaped, stepped;
 	char *upstream;
-	double *diameter, *aspect; /* of the present realisation */
-	size_t held;
+	double *diameter, *aspect; /* of the present gap */
 	/* drawn */
 	const struct population *population;
 	double volume, gap;
@@ -97,6 +96,8 @@ static int in_order(const void *a, const void *b)
 
 	if (x->realisation != y->realisation)
 		return x->realisation < y->realisation ? -1 : 1;
+	if (x->step != y->step)
+		return x->step < y->step ? -1 : 1;
 	return x->number < y->number ? -1 : x->number > y->number;
 }
 
@@ -117,11 +118,12 @@ struct source *particles_read(const char *path)
 {
 	struct source *s = xcalloc(1, sizeof *s);
 	struct table_in *t = table_open(path);
-	int more = table_next(t), cd, ca, cr, cv;
+	int more = table_next(t), cd, ca, cr, cs, cv;
 
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");
+	cs = table_find(t, "step");
 	cv = verdict_column(t);
 	for (; more; more = table_next(t)) {
 		struct row r = { .number = s->rows, .aspect = 1 };
@@ -138,11 +140,14 @@ struct source *particles_read(const char *path)
 				table_name(t), table_line(t), r.aspect);
 		if (cr >= 0)
 			r.realisation = table_whole(t, cr, 0, 1e15);
+		if (cs >= 0)
+			r.step = table_whole(t, cs, 0, 1e15);
 		r.part = table_part(t);
 		s->row[s->rows++] = r;
 	}
 	s->apart = cr >= 0;
 	s->shaped = ca >= 0;
+	s->stepped = cs >= 0;
 	if (table_upstream(t))
 		s->upstream = xstrdup(table_upstream(t));
 	qsort(s->row, s->rows, sizeof *s->row, in_order);
@@ -167,7 +172,7 @@ struct source *particles_drawn(
 	return s;
 }
 
-static int draw(struct source *s, struct particles_in *in, long *realisation)
+static int draw(struct source *s, struct particles_in *in)
 {
 	double all = s->volume * population_larger(s->population, iso4406_size[0]);
 
@@ -182,20 +187,23 @@ static int draw(struct source *s, struct particles_in *in, long *realisation)
 	stats_add("particles_left_out", floor(fmax(all - (double)in->n, 0)));
 	in->diameter = s->diameter;
 	in->aspect = NULL;
-	*realisation = s->realisation++;
+	in->realisation = s->realisation++;
 	return 1;
 }
 
-int particles_next(struct source *s, struct particles_in *in, long *realisation)
+int particles_next(struct source *s, struct particles_in *in)
 {
+	const struct row *first;
+
 	if (s->population)
-		return draw(s, in, realisation);
+		return draw(s, in);
 	if (s->at == s->rows)
 		return 0;
-	*realisation = s->row[s->at].realisation;
-	in->diameter = s->diameter;
-	in->aspect = s->aspect;
-	for (in->n = 0; s->at < s->rows && s->row[s->at].realisation == *realisation;
+	first = &s->row[s->at];
+	*in = (struct particles_in){ first->realisation, first->step, s->diameter,
+		s->aspect, 0 };
+	for (; s->at < s->rows && s->row[s->at].realisation == in->realisation &&
+		s->row[s->at].step == in->step;
 		s->at++, in->n++) {
 		s->diameter[in->n] = s->row[s->at].diameter;
 		s->aspect[in->n] = s->row[s->at].aspect;
@@ -211,6 +219,11 @@ int particles_apart(const struct source *s)
 int particles_shaped(const struct source *s)
 {
 	return s->shaped;
+}
+
+int particles_stepped(const struct source *s)
+{
+	return s->stepped;
 }
 
 const char *particles_upstream(const struct source *s)

@@ -12,8 +12,9 @@ extern struct opt particles_rows[]; /* for OPT_TABLE */
 
 struct source;
 
-/* The particles of one realisation. */
+/* The particles of one gap: of a realisation, or of one of its steps. */
 struct particles_in {
+	long realisation, step;
 	double *diameter, *aspect; /* aspect NULL: spheres */
 	size_t n;
 };
@@ -28,12 +29,14 @@ struct source *particles_read(const char *path);
 /* Draws what is in an area of the gap. */
 struct source *particles_drawn(
 	const struct population *p, double area, double gap, uint64_t seed);
-/* The next realisation; 0 at the end. */
-int particles_next(struct source *s, struct particles_in *in, long *realisation);
+/* The next gap; 0 at the end. */
+int particles_next(struct source *s, struct particles_in *in);
 /* 1 if the table has a column of aspects. */
 int particles_shaped(const struct source *s);
 /* 1 if the table has a column of realisations. */
 int particles_apart(const struct source *s);
+/* 1 if the table has a column of steps. */
+int particles_stepped(const struct source *s);
 const char *particles_upstream(const struct source *s); /* NULL if unknown */
 void particles_close(struct source *s);
 

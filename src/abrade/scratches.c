@@ -10,22 +10,30 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct scratch {
+/* The state of a surface. */
+struct moment {
 	long realisation;
+	double step; /* INFINITY: not known */
+};
+
+struct scratch {
+	struct moment from;
 	double diameter, depth, section;
 	int cut;
 };
 
 static struct scratch *list;
 static size_t n, room;
-static long *seen; /* realisations of the records so far */
+static struct moment *seen; /* by the records so far */
 static size_t records, seen_room;
 
-void scratches_add(long realisation, double diameter, double depth, double section)
+void scratches_add(
+	long realisation, long step, double diameter, double depth, double section)
 {
 	if (room_for(&list, &room, n + 1, sizeof *list))
 		die(EXIT_RUN, "out of memory");
-	list[n++] = (struct scratch){ realisation, diameter, depth, section, 0 };
+	list[n++] = (struct scratch){ { realisation, (double)step }, diameter, depth,
+		section, 0 };
 }
 
 /* If both bodies are equally hard, a groove extends over half the distance on each. */
@@ -36,21 +44,30 @@ static double way(const struct scratch *s, double length)
 	return whole > 0 ? length * s->section / whole : 0;
 }
 
-/* Whether an earlier record is of this realisation. */
-static int is_again(long realisation)
+/* Whether an earlier record is of this realisation and step. */
+static int is_again(struct moment m)
 {
 	size_t i = 0;
 
-	while (i < records && seen[i] != realisation)
+	while (i < records &&
+		!(seen[i].realisation == m.realisation && seen[i].step == m.step))
 		i++;
 	if (room_for(&seen, &seen_room, records + 1, sizeof *seen))
 		die(EXIT_RUN, "out of memory");
-	seen[records] = realisation;
+	seen[records] = m;
 	return i < records++;
 }
 
+/* A surface keeps the grooves of earlier steps. */
+static struct moment moment_of(const struct record *r, int stepped)
+{
+	double step = stepped ? record_get_number(r, "step") : NAN;
+
+	return (struct moment){ r->realisation, isnan(step) ? INFINITY : step };
+}
+
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
-	int apart, const char *cmd, size_t *again)
+	int apart, int stepped, const char *cmd, size_t *again)
 {
 	size_t left = 0;
 	struct fields_in *in = fields_open(path, NULL);
@@ -62,18 +79,20 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 	while (fields_read(in, &r)) {
 		double *z = record_need(&r, "height", 1, in), lx = r.nx * r.dx,
 		       ly = r.ny * r.dy;
+		struct moment now = moment_of(&r, stepped);
 
 		if (r.nz != 1)
 			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
 				fields_name(in), fields_count(in), r.nz);
-		*again += (size_t)is_again(r.realisation);
+		*again += (size_t)is_again(now);
 		for (size_t i = 0; i < n; i++) {
 			struct groove g = { .length = way(&list[i], length),
 				.diameter = list[i].diameter,
 				.depth = list[i].depth,
 				.cut = cut };
 
-			if (apart && list[i].realisation != r.realisation)
+			if ((apart && list[i].from.realisation != now.realisation) ||
+				list[i].from.step > now.step)
 				continue;
 			g.x = lx * philox_uniform(seed, (uint32_t)r.realisation,
 					   RNG_ABRASION, (1ull << 40) + 2 * i);

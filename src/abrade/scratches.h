@@ -5,13 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* One groove, to be cut into the surface of its realisation. */
-void scratches_add(long realisation, double diameter, double depth, double section);
+/* One groove, to be cut into the surface of its realisation from this step on. */
+void scratches_add(
+	long realisation, long step, double diameter, double depth, double section);
 /* Reads heights, cuts the grooves of their realisation (of all realisations if apart is
- * 0) at random positions and writes the fields, with this cmd, to standard output.
- * Returns the number of grooves whose realisation has no surface; again: of records of
- * the realisation of an earlier one. */
+ * 0), and up to their step if they have one, at random positions and writes the fields,
+ * with this cmd, to standard output.  Returns the number of grooves that no surface has;
+ * again: of records of the realisation, and if stepped of the step, of an earlier one. */
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
-	int apart, const char *cmd, size_t *again);
+	int apart, int stepped, const char *cmd, size_t *again);
 
 #endif
