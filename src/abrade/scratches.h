@@ -8,10 +8,11 @@
 /* One groove, to be cut into the surface of its realisation from this step on. */
 void scratches_add(
 	long realisation, long step, double diameter, double depth, double section);
-/* Reads heights, cuts the grooves of their realisation (of all realisations if apart is
- * 0), and up to their step if they have one, at random positions and writes the fields,
- * with this cmd, to standard output.  Returns the number of grooves that no surface has;
- * again: of records of the realisation, and if stepped of the step, of an earlier one. */
+/* Reads heights, cuts grooves into them at random positions and writes the fields, with
+ * this cmd, to standard output: into each record those of its realisation (of all if
+ * apart is 0) and, if stepped, of its step and earlier ones.  Returns the number of
+ * grooves that no surface has; again: of records whose realisation, and if stepped step,
+ * is that of an earlier one. */
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 	int apart, int stepped, const char *cmd, size_t *again);
 

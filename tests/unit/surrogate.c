@@ -280,36 +280,22 @@ static void count_errors(const double *p, int left_out, int *all, int *within)
 	free(height);
 }
 
-/* The errors of direct sums are about normal; those of larger particles average out. */
-static void test_sums(void)
+/* Of so many surfaces with so many asperities each: 90 % of the particles lie within
+ * their 90 % intervals; errors are about normal, but those of larger particles average
+ * out. */
+static void test_within(uint64_t surfaces, uint64_t asperities, int left_out, int least,
+	const char *which)
 {
 	double *p = malloc(CELLS * sizeof *p);
 	int all = 0, within = 0;
 
-	for (uint64_t k = 1; k <= 10; k++) {
-		press_asperities(p, k, 300);
-		count_errors(p, 0, &all, &within);
+	for (uint64_t k = 1; k <= surfaces; k++) {
+		press_asperities(p, k, asperities);
+		count_errors(p, left_out, &all, &within);
 	}
-	ok(all > 100 && within > 0.86 * all && within < 0.98 * all,
-		"of %d particles of which every cell was measured 90 %% are off by less than 1.645 standard errors of the sums: %d",
-		all, within);
-	free(p);
-}
-
-/* Of surfaces where two cells of three are measured, so that single ones are left out
- * among others that are not. */
-static void test_left_out(void)
-{
-	double *p = malloc(CELLS * sizeof *p);
-	int all = 0, within = 0;
-
-	for (uint64_t k = 1; k <= 40; k++) {
-		press_asperities(p, k, 110);
-		count_errors(p, 1, &all, &within);
-	}
-	ok(all > 300 && within > 0.86 * all && within < 0.98 * all,
-		"of %d particles with cells left out 90 %% are off by less than 1.645 standard errors: %d",
-		all, within);
+	ok(all > least && within > 0.86 * all && within < 0.98 * all,
+		"of %d particles %s 90 %% are off by less than 1.645 standard errors: %d",
+		all, which, within);
 	free(p);
 }
 
@@ -327,7 +313,8 @@ int main(void)
 	test_errors(0.01);
 	test_errors(0.002);
 	test_freedom();
-	test_sums();
-	test_left_out();
+	test_within(10, 300, 0, 100, "of which every cell was measured");
+	/* Two cells of three are measured: single ones are left out among others. */
+	test_within(40, 110, 1, 300, "with cells left out");
 	return tap_done();
 }
