@@ -7,7 +7,6 @@
 
 struct wp_separate {
 	struct early *early;
-	struct separate *separate; /* early_whole() */
 	struct wp_separate_par par;
 	const char *reason;
 };
@@ -55,7 +54,6 @@ struct wp_separate *wp_separate_new(
 		free(s);
 		return report(status, WP_NO_MEMORY);
 	}
-	s->separate = early_whole(s->early);
 	report(status, WP_OK);
 	return s;
 }
@@ -112,9 +110,9 @@ enum wp_status wp_separate_push(struct wp_separate *s, const double *x, size_t f
 
 enum wp_status wp_separate_end(struct wp_separate *s)
 {
-	enum wp_status status = outcome(s, separate_end(s->separate));
+	enum wp_status status = outcome(s, early_end(s->early));
 
-	enum separate_doubt doubt = separate_doubtful(s->separate);
+	enum separate_doubt doubt = separate_doubtful(renewal_now(early_whole(s->early)));
 
 	if (status != WP_OK && status != WP_NOT_CONVERGED)
 		return status;

@@ -125,6 +125,10 @@ static int is_doubtful(
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])
+	      : doubt == SEPARATE_CHANGED
+		      ? xprintf("more than a tenth of the rows before the instrument was "
+				"learned again are doubted: the others there are "
+				"doubtful, too")
 	      : doubt == SEPARATE_COVERED
 		      ? xprintf("events that are no particles cover %.2g %% of it, and "
 				"hide the particles there",
@@ -151,9 +155,9 @@ static int is_doubtful(
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
-		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE ||
-		doubt == SEPARATE_COUNTLESS)
+	if (doubt == SEPARATE_CHANGED || doubt == SEPARATE_COVERED ||
+		doubt == SEPARATE_UNLEARNED || doubt == SEPARATE_UNEXPLAINED ||
+		doubt == SEPARATE_UNLIKE || doubt == SEPARATE_COUNTLESS)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
@@ -209,6 +213,22 @@ static void tell_missing(const struct separate *s, struct found *out, const char
 	free(what);
 }
 
+/* Says where the instrument was learned again. */
+static void tell_changes(const struct renewal *r, struct found *out, const char *name)
+{
+	size_t n;
+	const long long *change = renewal_changes(r, &n);
+
+	for (size_t i = 0; i < n; i++) {
+		double at = (double)change[i] / (double)out->rate;
+
+		warn("%s: the instrument changed: it is learned again from %.3g s on",
+			name, at);
+		table_comment(out->particles, "changed",
+			"the instrument is learned again from %.3g s on", at);
+	}
+}
+
 /* Says how many rows are events that are no particles. */
 static void tell_events(const struct separate *s, struct found *out)
 {
@@ -248,7 +268,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		.known = &par.known };
 	struct instrument kept, view;
 	struct early *e;
-	struct separate *s;
+	const struct separate *s;
 	int doubtful, learned = 0;
 	enum separate_status status;
 	size_t n;
@@ -258,12 +278,12 @@ int separate_record(struct signal_in *in, struct found *out,
 	e = early_new(&par);
 	if (!e)
 		die(EXIT_RUN, "no memory");
-	s = early_whole(e);
 	while ((n = signal_read_some(in, frame, BLOCK)) > 0) {
 		int any;
 
 		status = early_push(e, frame, n);
 		any = put_ready(e, out);
+		s = renewal_now(early_whole(e));
 		check_status(status, s, signal_name(in));
 		if (any)
 			table_flush(out->particles);
@@ -272,8 +292,9 @@ int separate_record(struct signal_in *in, struct found *out,
 			keep(s, &place);
 		}
 	}
-	status = separate_end(s);
+	status = early_end(e);
 	put_ready(e, out);
+	s = renewal_now(early_whole(e));
 	check_status(status, s, signal_name(in));
 	if (file && !par.kept)
 		keep(s, &place);
@@ -285,6 +306,7 @@ int separate_record(struct signal_in *in, struct found *out,
 	tell_missing(s, out, signal_name(in));
 	tell_together(s, out, signal_name(in));
 	tell_events(s, out);
+	tell_changes(early_whole(e), out, signal_name(in));
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL) ||
 		   is_out_of_phase(out, signal_name(in));
 	found_detectable(out, separate_calibration(s), separate_ratio(s));

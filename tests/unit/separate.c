@@ -249,7 +249,7 @@ static int separate_live(const double *x, size_t n, size_t piece, int early[6])
 			if (at + some <= 10000 * (k + 1))
 				early[k] = count;
 	}
-	separate_end(early_whole(e));
+	early_end(e);
 	while (count < 2 * MOST && early_next(e, &found[count]))
 		count++;
 	early_free(e);
@@ -294,8 +294,77 @@ static void test_early(void)
 	free(x);
 }
 
+/* The flow becomes slower by 43 % at pulse slower of PULSES; *changes: how often the
+ * instrument was learned again. */
+static int separate_slower(int slower, size_t piece, struct pulse *p, int m, size_t n,
+	long long change[2], size_t *changes)
+{
+	struct separate_par par = { .method = SEPARATE_FIT, .known = unknown };
+	struct renewal *r = renewal_new(&par);
+	double *x;
+	int count = 0;
+
+	for (int i = 0; i < m; i++) {
+		p[i] = pulse_at(500 + 700 * i, (uint64_t)i);
+		p[i].delay += i < slower ? 0 : 150;
+	}
+	x = record_of(p, m, n, 0.02, 0);
+	for (size_t at = 0; at < n; at += piece)
+		if (renewal_push(r, x + 2 * at, piece < n - at ? piece : n - at) !=
+			SEPARATE_OK)
+			break;
+	ok(renewal_end(r) == SEPARATE_OK, "a flow that changes at pulse %d is learned",
+		slower);
+	while (count < 2 * MOST && renewal_next(r, &found[count]))
+		count++;
+	renewal_changes(r, changes);
+	for (size_t i = 0; i < *changes && i < 2; i++)
+		change[i] = renewal_changes(r, changes)[i];
+	ok(separate_counters(renewal_now(r))->rows == count &&
+			separate_doubtful(renewal_now(r)) == SEPARATE_BELIEVED,
+		"its %d rows are counted once, and believed", count);
+	renewal_free(r);
+	free(x);
+	return count;
+}
+
+/* Within what is learned from, behind it, and never. */
+static void test_changes(void)
+{
+	enum { PULSES = 150, LENGTH = 106000 };
+	static const int slower[] = { 45, 125, PULSES };
+	static struct transit first[2 * MOST];
+	static struct pulse p[PULSES];
+
+	for (int k = 0; k < 3; k++) {
+		long long change[2] = { 0 };
+		size_t changes = 0, again = 0;
+		double rms, at = 500 + 700 * slower[k];
+		int count = separate_slower(
+			    slower[k], LENGTH, p, PULSES, LENGTH, change, &changes),
+		    good = matched(p, PULSES, count, 20, &rms);
+
+		memcpy(first, found, sizeof first);
+		/* Amplitudes of 30 standard deviations and more: 1 is five errors. */
+		ok(good == PULSES && count == PULSES && rms < 1,
+			"%d of %d pulses in %d rows, rms error of delay %.2f", good,
+			PULSES, count, rms);
+		ok(slower[k] == PULSES
+				? changes == 0
+				: changes == 1 && fabs((double)change[0] - at) < 700,
+			"%zu changes, at %lld", changes, change[0]);
+		if (slower[k] == PULSES)
+			continue;
+		separate_slower(slower[k], 777, p, PULSES, LENGTH, change, &again);
+		ok(again == changes &&
+				memcmp(first, found, (size_t)count * sizeof *found) == 0,
+			"pieces of 777 samples give the same rows");
+	}
+}
+
 int main(void)
 {
+	test_changes();
 	test_dead_filter();
 	test_own_shape();
 	test_pairs();

@@ -8,7 +8,7 @@
 enum { FEW = 8192 };
 
 struct early {
-	struct separate *whole;
+	struct renewal *whole;
 	struct separate *first; /* NULL: there are no more early rows */
 	double given; /* arrivals before this sample are those of rows given early */
 };
@@ -29,7 +29,7 @@ struct early *early_new(const struct separate_par *given)
 	if (!e)
 		return NULL;
 	e->given = -INFINITY;
-	e->whole = separate_new(given);
+	e->whole = renewal_new(given);
 	par.learn = FEW;
 	par.clearly = 1;
 	par.want_sources = 0;
@@ -46,7 +46,7 @@ void early_free(struct early *e)
 	if (!e)
 		return;
 	end(e);
-	separate_free(e->whole);
+	renewal_free(e->whole);
 	free(e);
 }
 
@@ -61,7 +61,12 @@ enum separate_status early_push(struct early *e, const double *x, size_t n)
 		if (separate_push(e->first, x, n < left ? n : left) != SEPARATE_OK)
 			end(e);
 	}
-	return separate_push(e->whole, x, n);
+	return renewal_push(e->whole, x, n);
+}
+
+enum separate_status early_end(struct early *e)
+{
+	return renewal_end(e->whole);
 }
 
 int early_next(struct early *e, struct transit *p)
@@ -73,13 +78,13 @@ int early_next(struct early *e, struct transit *p)
 		}
 		end(e);
 	}
-	while (separate_next(e->whole, p))
+	while (renewal_next(e->whole, p))
 		if (!(p->t1 < e->given)) /* nan: an event at sensor 2 alone */
 			return 1;
 	return 0;
 }
 
-struct separate *early_whole(struct early *e)
+const struct renewal *early_whole(const struct early *e)
 {
 	return e->whole;
 }

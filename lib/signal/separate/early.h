@@ -9,7 +9,7 @@
 #ifndef SIGNAL_EARLY_H
 #define SIGNAL_EARLY_H
 
-#include "signal/separate/separate.h"
+#include "signal/separate/renewal.h"
 
 struct early;
 /* As separate_new(); no row is early if par tells how much is learned from, or more than
@@ -19,11 +19,10 @@ void early_free(struct early *e);
 
 /* As those of separate.h. */
 enum separate_status early_push(struct early *e, const double *x, size_t n);
+enum separate_status early_end(struct early *e);
 int early_next(struct early *e, struct transit *p);
 
-/* What separates all samples: for separate_end(), and for what it has learned and
- * counted.
- */
-struct separate *early_whole(struct early *e);
+/* What separates all samples. */
+const struct renewal *early_whole(const struct early *e);
 
 #endif

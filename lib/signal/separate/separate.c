@@ -66,6 +66,44 @@ const struct separate_counters *separate_counters(const struct separate *s)
 	return &s->counters;
 }
 
+static int is_foreign(
+	const struct separate_counters *c, const struct separate_counters *before)
+{
+	struct separate_counters own = { .rows = c->rows - before->rows,
+		.unresolved = c->unresolved - before->unresolved,
+		.misfits = c->misfits - before->misfits,
+		.together = c->together - before->together };
+	double misfits;
+
+	own.events[SEPARATE_TRANSIENT] =
+		c->events[SEPARATE_TRANSIENT] - before->events[SEPARATE_TRANSIENT];
+	misfits = separate_misfits(&own);
+	return separate_too_many(misfits, separate_tested(&own));
+}
+
+void separate_continue(struct separate *s, const struct separate *last,
+	const struct separate_counters *counted, int foreign)
+{
+	enum { COUNTERS = sizeof s->counters / sizeof(double) };
+	struct separate_counters *c = &s->before;
+	double *in_samples[] = { &c->passed_over, &c->unlearned, &c->samples, &c->active,
+		&c->dense, &c->countless, &c->compared, &c->unlike, &c->covered,
+		&c->missing[0], &c->missing[1] };
+	double a[COUNTERS], b[COUNTERS];
+
+	s->was_foreign = last->was_foreign || foreign;
+	*c = *counted;
+	for (size_t i = 0; i < sizeof in_samples / sizeof *in_samples; i++)
+		*in_samples[i] *= (double)last->ratio / s->ratio;
+	memcpy(a, &s->counters, sizeof a); /* all members are doubles */
+	memcpy(b, c, sizeof b);
+	for (int i = 0; i < COUNTERS; i++)
+		a[i] += b[i];
+	memcpy(&s->counters, a, sizeof a);
+	for (int k = 0; k < 2; k++)
+		s->buffer[k].missing += c->missing[k];
+}
+
 int separate_ratio(const struct separate *s)
 {
 	return s->ratio;
@@ -326,8 +364,6 @@ static const double COVERED = 0.02;
  * sums by Campbell's theorem are not believed. */
 static const double UNLIKE = 0.2;
 
-/* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
- * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
 {
 	const struct separate_counters *c = &s->counters;
@@ -340,8 +376,10 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (separate_misfits(c) > 2 && 10 * separate_misfits(c) > separate_tested(c))
+	if (is_foreign(c, &s->before))
 		return SEPARATE_FOREIGN;
+	if (s->was_foreign)
+		return SEPARATE_CHANGED;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;
 	if (c->countless > COVERED * c->samples)

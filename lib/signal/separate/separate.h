@@ -119,6 +119,13 @@ static inline double separate_misfits(const struct separate_counters *c)
 	return 2 * doubted > separate_tested(c) ? doubted : c->misfits;
 }
 
+/* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
+ * not those that were learned, and other rows may be wrong, too. */
+static inline int separate_too_many(double misfits, double tested)
+{
+	return misfits > 2 && 10 * misfits > tested;
+}
+
 struct separate;
 struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
 void separate_free(struct separate *s);
@@ -145,10 +152,15 @@ int separate_instrument(const struct separate *s, struct instrument *view);
  * samples. */
 void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
+/* Goes on counting after another one that had counted this.  foreign: 1 if the rows of
+ * that were doubtful. */
+void separate_continue(struct separate *s, const struct separate *last,
+	const struct separate_counters *counted, int foreign);
 /* Why all rows are doubtful. */
 enum separate_doubt {
 	SEPARATE_BELIEVED,   /* they are not */
 	SEPARATE_FOREIGN,    /* so many pulses fit no particle that none is believed */
+	SEPARATE_CHANGED,    /* so did too many before the instrument was learned again */
 	SEPARATE_NOISE,      /* the noise is not that of the kept instrument */
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */

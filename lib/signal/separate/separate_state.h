@@ -123,7 +123,8 @@ struct separate {
 	long long hold; /* rows before this sample are tested together */
 	int holding, group;
 	double *source;
-	struct separate_counters counters;
+	struct separate_counters counters, before; /* before: at the first sample */
+	int was_foreign; /* 1: what came before fitted no particle */
 	enum separate_status reason;    /* why nothing could be learned */
 	struct bursts_power nothing[2]; /* of the last noise that had nothing in common */
 	int unexplained; /* 1: although a channel stands out of its noise */
