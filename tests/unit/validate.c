@@ -127,41 +127,6 @@ static void test_recurring(void)
 	validation_free(v);
 }
 
-/* Heights within a tenth, either pulse first; of one pair in three the distance is 0.33
- * durations, of the others anything up to 1.  Every group has two pairs, three durations
- * apart. */
-static void test_favourite(void)
-{
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-	int missed = 0, others = 0;
-
-	draw(e, 0, 0.1, 160000);
-	for (int i = ALONE; i < ROWS; i += 2) {
-		double *z = (double[2]){ normal(170000 + (uint64_t)i),
-			philox_uniform(18, 0, RNG_PARTICLE, (uint64_t)i) };
-
-		e[i].amplitude = 20 * (1 + 0.1 * z[0]);
-		e[i + 1].amplitude = 20;
-		e[i + 1].delay = e[i].delay;
-		e[i + 1].time = i % 3 ? 0.1 + 0.9 * z[1] : 0.33 + 0.01 * z[0];
-		if ((i - ALONE) % 4)
-			for (int k = i; k < i + 2; k++) {
-				e[k].group = e[i - 1].group;
-				e[k].time += 3;
-			}
-	}
-	validation_test(v, e, ROWS);
-	for (int i = ALONE; i < ROWS; i += 2) {
-		missed += i % 3 == 0 && !(e[i].doubted && e[i + 1].doubted);
-		others += i % 3 != 0 && e[i].doubted;
-	}
-	ok(missed == 0, "pulses of one height at a favourite distance are doubted");
-	ok(others < PAIRS / 3 && doubted(e, 0, ALONE) == 0,
-		"of other pairs only those at this distance (%d), none alone", others);
-	validation_free(v);
-}
-
 /* Groups of one particle each, a share of them negative, and one of five pulses, three of
  * them negative. */
 static void test_signs(int one_in, int expected)
@@ -301,7 +266,6 @@ int main(void)
 	test_limit(1);
 	test_limit(0);
 	test_recurring();
-	test_favourite();
 	test_signs(ROWS, 1);
 	test_signs(2, 0);
 	test_long();

@@ -5,10 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-	FEW = 8,    /* fewest delays for an estimate of the variance */
-	CLASSES = 8 /* of distance in a duration */
-};
+enum { FEW = 8 }; /* fewest delays for an estimate of the variance */
 
 struct delay {
 	double value, var;
@@ -23,7 +20,7 @@ struct validation {
 	struct flow flow, told;      /* as estimated, and as told before */
 	double place[EVIDENCE_KEPT]; /* of weak pulses beside the nearest larger one */
 	size_t places;
-	double distant[CLASSES], groups;
+	double groups;
 	double signs[2]; /* pulses that are positive, and negative */
 };
 
@@ -169,32 +166,16 @@ static size_t nearest_larger(const struct evidence *e, size_t m, size_t i)
 	return found;
 }
 
-/* Durations by which a pulse follows the nearest larger one; NAN: there is none, or their
- * velocities differ by more than the error. */
-static double place_of(const struct evidence *e, size_t m, size_t i)
+/* Durations by which a pulse follows the nearest larger one; NAN: there is none, it is
+ * less than twice as high, or their velocities differ by more than the error. */
+static double weak_place(const struct evidence *e, size_t m, size_t i)
 {
 	const struct evidence *l = &e[nearest_larger(e, m, i)];
 
-	return l != &e[i] && e[i].var > 0 &&
+	return fabs(e[i].amplitude) < 0.5 * fabs(l->amplitude) && e[i].var > 0 &&
 			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
 		       ? e[i].time - l->time
 		       : NAN;
-}
-
-/* The same of a pulse that is less than half as high as the larger one. */
-static double weak_place(const struct evidence *e, size_t m, size_t i)
-{
-	return fabs(e[i].amplitude) < 0.5 * fabs(e[nearest_larger(e, m, i)].amplitude)
-		       ? place_of(e, m, i)
-		       : NAN;
-}
-
-/* Class of the distance, whichever of both is first, within a duration; else -1. */
-static int distance_of(const struct evidence *e, size_t m, size_t i)
-{
-	double apart = fabs(place_of(e, m, i));
-
-	return apart < 1 ? (int)(apart * CLASSES) : -1;
 }
 
 /* Probability that noise alone moves as many delays of a group to the limits, or that
@@ -237,21 +218,6 @@ static int recurs(
 	       poisson_tail(here, (around + 1) / 3.0) * (double)kept < RARELY;
 }
 
-/* 1 if the distance is more frequent than a smaller one, by four standard deviations and
- * in a tenth of all groups.  Of particles, which arrive independently, none is, beyond
- * the first class, in which two may be fitted as one; of pulses fitted to a pulse of
- * another shape it is.  The class before may hold the same distances. */
-static int is_favourite(
-	const struct validation *v, const struct evidence *e, size_t m, size_t i)
-{
-	int k = distance_of(e, m, i);
-	double here = k < 0 ? 0 : v->distant[k], least = here;
-
-	for (int j = 1; j < k - (k > 2); j++)
-		least = fmin(least, v->distant[j]);
-	return here - least > fmax(0.1 * v->groups, SIGMAS_RARELY * sqrt(here + least));
-}
-
 /* --- signs */
 
 static void count_signs(const struct evidence *e, size_t m, double count[2])
@@ -291,12 +257,9 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 		v->signs[1] += sign[1];
 		for (size_t k = 0; k < m; k++) {
 			double place = weak_place(e + i, m, k);
-			int distance = distance_of(e + i, m, k);
 
 			if (!isnan(place))
 				v->place[v->places++ % EVIDENCE_KEPT] = place;
-			if (distance >= 0)
-				v->distant[distance]++;
 		}
 	}
 	learn_flow(v);
@@ -333,7 +296,7 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
 	for (size_t i = 0; i < m; i++)
-		if (recurs(v, e, m, i) || is_favourite(v, e, m, i))
+		if (recurs(v, e, m, i))
 			e[i].doubted = e[nearest_larger(e, m, i)].doubted = 1;
 }
 
