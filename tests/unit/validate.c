@@ -127,29 +127,6 @@ static void test_recurring(void)
 	validation_free(v);
 }
 
-/* Groups of one particle each, a share of them negative, and one of five pulses, three of
- * them negative. */
-static void test_signs(int one_in, int expected)
-{
-	enum { FIVE = 5 };
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-
-	draw(e, 0, 0.1, 180000);
-	for (int i = 0; i < ROWS; i++) {
-		e[i].pulse = 1;
-		e[i].amplitude = one_in && i % one_in == 0 ? -20 : 20;
-		e[i].group = i < ROWS - FIVE ? i + 1 : ROWS;
-		if (i >= ROWS - FIVE)
-			e[i].amplitude = i % 2 ? -20 : 20;
-	}
-	validation_test(v, e, ROWS);
-	ok(doubted(e, ROWS - FIVE, ROWS) == expected && doubted(e, 0, ROWS - FIVE) == 0,
-		"five pulses of both signs are %s where one particle in %d is negative",
-		expected ? "doubted" : "believed", one_in);
-	validation_free(v);
-}
-
 /* Two thousand groups of two, a third of the weak pulses at one distance. */
 static void test_long(void)
 {
@@ -266,8 +243,6 @@ int main(void)
 	test_limit(1);
 	test_limit(0);
 	test_recurring();
-	test_signs(ROWS, 1);
-	test_signs(2, 0);
 	test_long();
 	test_first_negative(20);
 	test_first_negative(5000);

@@ -21,7 +21,6 @@ struct validation {
 	double place[EVIDENCE_KEPT]; /* of weak pulses beside the nearest larger one */
 	size_t places;
 	double groups;
-	double signs[2]; /* pulses that are positive, and negative */
 };
 
 struct validation *validation_new(void)
@@ -218,43 +217,14 @@ static int recurs(
 	       poisson_tail(here, (around + 1) / 3.0) * (double)kept < RARELY;
 }
 
-/* --- signs */
-
-static void count_signs(const struct evidence *e, size_t m, double count[2])
-{
-	count[0] = count[1] = 0;
-	for (size_t i = 0; i < m; i++)
-		count[e[i].amplitude < 0] += e[i].pulse;
-}
-
-/* 1 if the signs of a group are those of noise, either as probable, and not those of the
- * particles of other groups, by the rule of succession.  A group of noise is as rare as a
- * first particle of the other sign, so that this alone is believed however many there
- * were before. */
-static int has_other_signs(const struct validation *v, const struct evidence *e, size_t m)
-{
-	double own[2], all = v->signs[0] + v->signs[1], odds = 0;
-
-	count_signs(e, m, own);
-	for (int k = 0; k < 2; k++)
-		odds += own[k] * log(0.5 * (all - own[0] - own[1] + 2) /
-					 (v->signs[k] - own[k] + 1));
-	return odds > fmax(0.5 * LIKELIHOOD_CERTAIN, log(all + 2));
-}
-
 /* --- the test */
 
 static void take_in(struct validation *v, const struct evidence *e, size_t n)
 {
-	double sign[2];
-
 	for (size_t i = 0, m; i < n; i += m) {
 		m = group_size(e, i, n);
 		take_delay(v, e + i, m);
 		v->groups++;
-		count_signs(e + i, m, sign);
-		v->signs[0] += sign[0];
-		v->signs[1] += sign[1];
 		for (size_t k = 0; k < m; k++) {
 			double place = weak_place(e + i, m, k);
 
@@ -290,8 +260,7 @@ static int too_many_at_limit(
 
 static void test_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m) ||
-			 has_other_signs(v, e, m);
+	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);

@@ -9,8 +9,7 @@
  * that stand alone.
  *
  * A weak pulse that recurs at one distance from a strong one of the same velocity is an
- * error of the shape of the strong one.  A group whose signs are those of noise, not
- * those of the other groups, is none of particles.
+ * error of the shape of the strong one.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not like the learned one, and no row is believed.
