@@ -82,29 +82,6 @@ static void test_other_velocities(void)
 	validation_free(v);
 }
 
-/* Five vague delays of a group of six at a limit of the range. */
-static void test_limit(int fits)
-{
-	enum { SIX = 6 };
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-
-	draw(e, 0, 0.1, 140000);
-	for (int i = 0; i < SIX; i++)
-		e[ALONE + i].group = e[ALONE].group;
-	for (int i = 1; i < SIX; i++) {
-		e[ALONE + i].delay = 6;
-		e[ALONE + i].var = 9;
-		e[ALONE + i].fits = fits;
-	}
-	validation_range(v, -6, 6);
-	validation_test(v, e, ROWS);
-	ok(e[ALONE].doubted == fits,
-		"a pulse beside five that %s and end at a limit is %s",
-		fits ? "fit" : "do not fit", fits ? "doubted" : "not");
-	validation_free(v);
-}
-
 /* A twentieth as high, its velocity unknown, at one distance in one group of three. */
 static void test_recurring(void)
 {
@@ -240,8 +217,6 @@ int main(void)
 		test_flow(2, 2000 * seed + 20000);
 	}
 	test_other_velocities();
-	test_limit(1);
-	test_limit(0);
 	test_recurring();
 	test_long();
 	test_first_negative(20);

@@ -177,9 +177,8 @@ static double weak_place(const struct evidence *e, size_t m, size_t i)
 		       : NAN;
 }
 
-/* Probability that noise alone moves as many delays of a group to the limits, or that
- * chance puts as many weak pulses at one place: at most one correct group in ten thousand
- * is doubted for either. */
+/* Probability that chance puts as many weak pulses at one place: at most one correct group
+ * in ten thousand is doubted. */
 static const double RARELY = 1e-4;
 
 /* 1 - the probability that a Poisson number is less than count. */
@@ -235,32 +234,9 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_flow(v);
 }
 
-/* 1 if more delays lie at a limit of the range than noise explains, without those of
- * pulses that do not fit, which are doubted already.  Their number is treated as Poisson
- * distributed, which has the longer tail. */
-static int too_many_at_limit(
-	const struct validation *v, const struct evidence *e, size_t m)
-{
-	double mean = 0;
-	int count = 0;
-
-	if (!(v->half > 0) || isinf(v->flow.var))
-		return 0;
-	for (size_t i = 0; i < m; i++) {
-		double sd = sqrt(v->flow.var + e[i].var), off = v->flow.mean - v->middle;
-
-		if (!(e[i].var > 0) || !e[i].fits)
-			continue;
-		mean += 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
-				      erfc((v->half + off) / (M_SQRT2 * sd)));
-		count += fabs(e[i].delay - v->middle) > (1 - 1e-6) * v->half;
-	}
-	return poisson_tail(count, mean) < RARELY;
-}
-
 static void test_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
+	int impossible = is_impossible(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
