@@ -210,31 +210,6 @@ static void test_weak(void)
 		"where small ones arrive at random none is doubted");
 }
 
-/* Of every sixteen rows four are in company of one another, with sizes like those of the
- * others, but for so many in all of a seventh of the size: too far apart to be weak. */
-static void test_small(int small)
-{
-	int found = 0, lost = 0;
-
-	make_rows(3, 0.1, 0);
-	for (int i = 0; i < ROWS; i++) {
-		row[i].group = i % 16 < 4 ? 1 + i / 16 : 100 + i;
-		row[i].time = 10 * i;
-		if (i % 16 == 1 && i / 16 < small)
-			row[i].amplitude = 3;
-	}
-	tested();
-	for (int i = 0; i < ROWS; i++)
-		if (row[i].amplitude == 3)
-			found += row[i].doubted;
-		else
-			lost += row[i].doubted;
-	ok(found == (small > 3 ? small : 0),
-		"of %d in company that are smaller than any that stands alone, %d are doubted",
-		small, found);
-	near(lost, 0, 0, "and no others");
-}
-
 /* Delays of the flow scatter; if by little, those of one row in sixteen are anywhere. */
 static void test_astray(double scatter, double flow_var)
 {
@@ -285,8 +260,6 @@ int main(void)
 	test_sizes();
 	test_edge();
 	test_weak();
-	test_small(2);
-	test_small(6);
 	test_exchange();
 	test_astray(0.05, 0.0025);
 	test_astray(0.25, 0.0025);

@@ -43,10 +43,10 @@ struct evidence {
 	 * error of the shape of a larger one, not of the flow, and any of these; */
 	double pair, half, shape, astray, wrong;
 	/* logarithms of the amplitude and of that of the largest pulse that it overlaps;
-	 * 1: it is much smaller than that; 1: it is by itself. */
+	 * 1: it is much smaller than that. */
 	double size, beside;
 	double gap; /* to the nearer neighbour; INFINITY: far */
-	int weak, alone;
+	int weak;
 };
 
 /* Latest rows, by which others are tested: they know a share of 0.7 % to 0.5 %. */
