@@ -177,8 +177,8 @@ static double weak_place(const struct evidence *e, size_t m, size_t i)
 		       : NAN;
 }
 
-/* Probability that chance puts as many weak pulses at one place: at most one correct group
- * in ten thousand is doubted. */
+/* Probability that chance puts as many weak pulses at one place: at most one correct
+ * group in ten thousand is doubted. */
 static const double RARELY = 1e-4;
 
 /* 1 - the probability that a Poisson number is less than count. */

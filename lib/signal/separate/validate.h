@@ -35,13 +35,9 @@ struct evidence {
 	int pulse;                 /* 1: it is one */
 	double odds[JOINT_SHARES]; /* of being two, for one other arrival per duration */
 	double exchange; /* odds of having the arrival of another pulse at sensor 2 */
-	/* Of a pulse fitted with others: its delay less that of the flow, over half of
-	 * the range searched, and the variance of this; 0: not known.  flow_var: least
-	 * variance of such delays in the flow. */
-	double off, off_var, flow_var;
 	/* Set by together_test(): probabilities of being a pair, half of a pulse, an
-	 * error of the shape of a larger one, not of the flow, and any of these; */
-	double pair, half, shape, astray, wrong;
+	 * error of the shape of a larger one, and any of these; */
+	double pair, half, shape, wrong;
 	/* logarithms of the amplitude and of that of the largest pulse that it overlaps;
 	 * 1: it is much smaller than that. */
 	double size, beside;
