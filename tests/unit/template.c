@@ -110,7 +110,8 @@ int main(void)
 	struct template t;
 
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], known, N, 1.2 * T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, 1.2 * T, TRANSIT, 1, 20, -1) ==
+				NUM_OK &&
 			t.shape,
 		"a pulse is found in a record of sine pulses");
 	ok(t.events == PULSES, "all pulses are alike (%d)", t.events);
@@ -129,13 +130,14 @@ int main(void)
 	template_clear(&t);
 
 	make_record(sine, -1);
-	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, -1) == NUM_OK &&
 			t.shape && t.reversed && least_difference(&t, sine, -1) < NOISE,
 		"reversed pulses are found, and are said to be");
 	template_clear(&t);
 
 	make_record(odd, 1);
-	ok(template_find(&t, y[0], y[1], known, N, 0.8 * T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, 0.8 * T, TRANSIT, 1, 20, -1) ==
+				NUM_OK &&
 			t.shape,
 		"a pulse that is none of the known ones is found");
 	ok(t.shape && least_difference(&t, odd, 1) < NOISE, "its shape is right");
@@ -144,17 +146,17 @@ int main(void)
 
 	/* One event has 24 times that noise, and its own size tells more or less. */
 	make_record(odd, 1);
-	ok(template_single(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, 0) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, 0) == NUM_OK &&
 			t.shape && t.events == 1,
 		"the pulse of the clearest event is found");
 	ok(t.shape && least_difference(&t, odd, 1) < 24 * NOISE, "its shape is right");
 	template_clear(&t);
-	ok(template_single(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 1) ==
+	ok(template_find(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 1) ==
 				NUM_OK &&
 			t.shape,
 		"so is that of the second of two");
 	template_clear(&t);
-	ok(template_single(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 2) ==
+	ok(template_find(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, 2) ==
 				NUM_OK &&
 			!t.shape,
 		"there is no third one of two");
@@ -162,7 +164,7 @@ int main(void)
 	/* The mean of four events has six times the noise power of that of 24. */
 	make_record(odd, 1);
 	add_second_pulses(odd);
-	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, -1) == NUM_OK &&
 			t.shape,
 		"a pulse is found of which few stand alone among pairs");
 	ok(t.events == PULSES / 6 && !t.signs, "it is the mean of those (%d)", t.events);
@@ -170,16 +172,17 @@ int main(void)
 	template_clear(&t);
 
 	make_record(sine, 0);
-	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, -1) == NUM_OK &&
 			!t.shape && t.events == 0,
 		"nothing is found in noise");
 	/* Two events are too few, by TEMPLATE_LEAST. */
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, 1500 * 2, T, TRANSIT, 1, 20, -1) ==
+				NUM_OK &&
 			!t.shape,
 		"two events are too few");
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], known, N, 4, TRANSIT, 1, 20) == NUM_OK &&
+	ok(template_find(&t, y[0], y[1], known, N, 4, TRANSIT, 1, 20, -1) == NUM_OK &&
 			!t.shape,
 		"pulses of fewer than eight samples are not described");
 	template_clear(&t);

@@ -210,63 +210,6 @@ static void test_weak(void)
 		"where small ones arrive at random none is doubted");
 }
 
-/* Of every sixteen rows four are in company of one another, with sizes like those of the
- * others, but for so many in all of a seventh of the size: too far apart to be weak. */
-static void test_small(int small)
-{
-	int found = 0, lost = 0;
-
-	make_rows(3, 0.1, 0);
-	for (int i = 0; i < ROWS; i++) {
-		row[i].group = i % 16 < 4 ? 1 + i / 16 : 100 + i;
-		row[i].time = 10 * i;
-		if (i % 16 == 1 && i / 16 < small)
-			row[i].amplitude = 3;
-	}
-	tested();
-	for (int i = 0; i < ROWS; i++)
-		if (row[i].amplitude == 3)
-			found += row[i].doubted;
-		else
-			lost += row[i].doubted;
-	ok(found == (small > 3 ? small : 0),
-		"of %d in company that are smaller than any that stands alone, %d are doubted",
-		small, found);
-	near(lost, 0, 0, "and no others");
-}
-
-/* Delays of the flow scatter; if by little, those of one row in sixteen are anywhere. */
-static void test_astray(double scatter, double flow_var)
-{
-	int wrong = 0, right = 0;
-
-	make_rows(0.3, 0.5, 1e-4);
-	for (int i = 0; i < ROWS; i++) {
-		double z[2];
-
-		philox_normal2(2, 0, RNG_PARTICLE, (uint64_t)i, z);
-		row[i].off = scatter * z[0];
-		if (scatter < 0.1 && i % 16 == 1)
-			row[i].off = i % 32 == 1 ? 0.9 : -0.8;
-		row[i].off_var = 1e-4;
-		row[i].flow_var = flow_var;
-	}
-	tested();
-	for (int i = 0; i < ROWS; i++) {
-		wrong += row[i].doubted && i % 16 == 1;
-		right += row[i].doubted && i % 16 != 1;
-	}
-	if (scatter < 0.1) {
-		near(wrong, ROWS / 16, 0, "delays that are not of the flow are doubted");
-		near(right, 0, 0.02 * ROWS,
-			"of the flow only those beyond 2.3 deviations are");
-	} else {
-		ok(wrong + right == 0,
-			"none is where the flow has them all (least variance %g)",
-			flow_var);
-	}
-}
-
 /* Odds of having the arrival of another pulse. */
 static void test_exchange(void)
 {
@@ -285,11 +228,6 @@ int main(void)
 	test_sizes();
 	test_edge();
 	test_weak();
-	test_small(2);
-	test_small(6);
 	test_exchange();
-	test_astray(0.05, 0.0025);
-	test_astray(0.25, 0.0025);
-	test_astray(0.25, 0.8); /* the flow is as wide as the range searched */
 	return tap_done();
 }

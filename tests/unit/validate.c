@@ -82,29 +82,6 @@ static void test_other_velocities(void)
 	validation_free(v);
 }
 
-/* Five vague delays of a group of six at a limit of the range. */
-static void test_limit(int fits)
-{
-	enum { SIX = 6 };
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-
-	draw(e, 0, 0.1, 140000);
-	for (int i = 0; i < SIX; i++)
-		e[ALONE + i].group = e[ALONE].group;
-	for (int i = 1; i < SIX; i++) {
-		e[ALONE + i].delay = 6;
-		e[ALONE + i].var = 9;
-		e[ALONE + i].fits = fits;
-	}
-	validation_range(v, -6, 6);
-	validation_test(v, e, ROWS);
-	ok(e[ALONE].doubted == fits,
-		"a pulse beside five that %s and end at a limit is %s",
-		fits ? "fit" : "do not fit", fits ? "doubted" : "not");
-	validation_free(v);
-}
-
 /* A twentieth as high, its velocity unknown, at one distance in one group of three. */
 static void test_recurring(void)
 {
@@ -124,64 +101,6 @@ static void test_recurring(void)
 	ok(missed == 0,
 		"a weak pulse that recurs at one distance is doubted, and the strong one");
 	ok(doubted(e, 0, ALONE) == 0, "pulses alone are not");
-	validation_free(v);
-}
-
-/* Heights within a tenth, either pulse first; of one pair in three the distance is 0.33
- * durations, of the others anything up to 1.  Every group has two pairs, three durations
- * apart. */
-static void test_favourite(void)
-{
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-	int missed = 0, others = 0;
-
-	draw(e, 0, 0.1, 160000);
-	for (int i = ALONE; i < ROWS; i += 2) {
-		double *z = (double[2]){ normal(170000 + (uint64_t)i),
-			philox_uniform(18, 0, RNG_PARTICLE, (uint64_t)i) };
-
-		e[i].amplitude = 20 * (1 + 0.1 * z[0]);
-		e[i + 1].amplitude = 20;
-		e[i + 1].delay = e[i].delay;
-		e[i + 1].time = i % 3 ? 0.1 + 0.9 * z[1] : 0.33 + 0.01 * z[0];
-		if ((i - ALONE) % 4)
-			for (int k = i; k < i + 2; k++) {
-				e[k].group = e[i - 1].group;
-				e[k].time += 3;
-			}
-	}
-	validation_test(v, e, ROWS);
-	for (int i = ALONE; i < ROWS; i += 2) {
-		missed += i % 3 == 0 && !(e[i].doubted && e[i + 1].doubted);
-		others += i % 3 != 0 && e[i].doubted;
-	}
-	ok(missed == 0, "pulses of one height at a favourite distance are doubted");
-	ok(others < PAIRS / 3 && doubted(e, 0, ALONE) == 0,
-		"of other pairs only those at this distance (%d), none alone", others);
-	validation_free(v);
-}
-
-/* Groups of one particle each, a share of them negative, and one of five pulses, three of
- * them negative. */
-static void test_signs(int one_in, int expected)
-{
-	enum { FIVE = 5 };
-	static struct evidence e[ROWS];
-	struct validation *v = validation_new();
-
-	draw(e, 0, 0.1, 180000);
-	for (int i = 0; i < ROWS; i++) {
-		e[i].pulse = 1;
-		e[i].amplitude = one_in && i % one_in == 0 ? -20 : 20;
-		e[i].group = i < ROWS - FIVE ? i + 1 : ROWS;
-		if (i >= ROWS - FIVE)
-			e[i].amplitude = i % 2 ? -20 : 20;
-	}
-	validation_test(v, e, ROWS);
-	ok(doubted(e, ROWS - FIVE, ROWS) == expected && doubted(e, 0, ROWS - FIVE) == 0,
-		"five pulses of both signs are %s where one particle in %d is negative",
-		expected ? "doubted" : "believed", one_in);
 	validation_free(v);
 }
 
@@ -298,12 +217,7 @@ int main(void)
 		test_flow(2, 2000 * seed + 20000);
 	}
 	test_other_velocities();
-	test_limit(1);
-	test_limit(0);
 	test_recurring();
-	test_favourite();
-	test_signs(ROWS, 1);
-	test_signs(2, 0);
 	test_long();
 	test_first_negative(20);
 	test_first_negative(5000);

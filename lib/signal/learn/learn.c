@@ -219,8 +219,8 @@ static enum separate_status set_single(const struct examples *ex, const double *
 	struct template one = { 0 };
 	double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration);
 
-	if (template_single(&one, y1, y2, ex->hidden, n, c->duration, c->transit,
-		    c->width, reach, guess->single) != NUM_OK)
+	if (template_find(&one, y1, y2, ex->hidden, n, c->duration, c->transit, c->width,
+		    reach, guess->single) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!one.shape)
 		return SEPARATE_HARD;

@@ -679,7 +679,7 @@ static enum separate_status find_template(const struct calibrate_par *par,
 		if (T < SHAPE_SHORTEST)
 			break;
 		if (template_find(&other, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
-			    c->width, reach) != NUM_OK)
+			    c->width, reach, -1) != NUM_OK)
 			return SEPARATE_MEMORY;
 		other.elsewhere = k > 0;
 		if (k > 0 && !(other.events > 0 && is_known(&other))) {

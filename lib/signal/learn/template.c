@@ -693,8 +693,7 @@ static enum num_status search_template(struct search *s, int single, struct temp
 	return NUM_OK;
 }
 
-/* As the functions of template.h; single -1: by events that are alike. */
-static enum num_status find(struct template *t, const double *y1, const double *y2,
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
 	double width, double reach, int single)
 {
@@ -729,20 +728,6 @@ static enum num_status find(struct template *t, const double *y1, const double *
 	status = search_template(&s, single, t);
 	free(s.z[0]);
 	return status;
-}
-
-enum num_status template_find(struct template *t, const double *y1, const double *y2,
-	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double width, double reach)
-{
-	return find(t, y1, y2, hidden, n, duration, transit, width, reach, -1);
-}
-
-enum num_status template_single(struct template *t, const double *y1, const double *y2,
-	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double width, double reach, int number)
-{
-	return find(t, y1, y2, hidden, n, duration, transit, width, reach, number);
 }
 
 void template_clear(struct template *t)

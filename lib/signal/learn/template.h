@@ -37,15 +37,12 @@ struct template
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
  * within a factor of two; transit: samples between the sensors, INFINITY if unknown;
  * width: of the pulses of sensor 2 over those of sensor 1; hidden: flags of samples that
- * are not known, or NULL.  NUM_MEMORY. */
+ * are not known, or NULL.  single: -1, or the number of the one clear event, in the order
+ * of size and shortness, that is taken: it has its noise, and may be more than one pulse.
+ * NUM_MEMORY. */
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
 	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double width, double reach);
-/* The same by a single clear event, of this number in the order of their size and
- * shortness: it has its noise, and may be more than one pulse. */
-enum num_status template_single(struct template *t, const double *y1, const double *y2,
-	const unsigned char *const hidden[2], size_t n, double duration, double transit,
-	double width, double reach, int number);
+	double width, double reach, int single);
 void template_clear(struct template *t);
 
 /* The share of the energy that the most similar pulse of sensor.h leaves after symmetric

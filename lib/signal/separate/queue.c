@@ -73,8 +73,6 @@ static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 {
 	struct entry *q = s->queue + s->tested;
 	double half = validation_half(s->validation);
-	int plug =
-		s->scene.delta_max - s->scene.delta_min <= 2 * calibration_plug(&s->cal);
 	struct flow flow;
 	size_t m = 0;
 
@@ -87,11 +85,6 @@ static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 				a[m].exchange *= exp(fmin(
 					-0.5 * q[i].more_square / (flow.var + a[m].var),
 					300));
-			if (q[i].row.sources > 1 && half > 0 && plug) {
-				a[m].off = (a[m].delay - flow.mean) / half;
-				a[m].off_var = a[m].var / (half * half);
-				a[m].flow_var = flow.margin / (half * half);
-			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
 		}
 	/* Errors of a shape decay in two durations, but it may be known as far as it
@@ -102,8 +95,7 @@ static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 		if (q[i].evidence.pulse && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
-			if (fmax(fmax(a[m - 1].shape, a[m - 1].half), a[m - 1].astray) >
-				a[m - 1].pair)
+			if (fmax(a[m - 1].shape, a[m - 1].half) > a[m - 1].pair)
 				s->counters.misfits++;
 			else
 				s->counters.together++;

@@ -1,7 +1,6 @@
 /* together.c - see together.h */
 #include "signal/separate/together.h"
 #include "num/select.h"
-#include "num/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -22,23 +21,14 @@ static const double NEAR = 0.1, FAR = 0.6;
  * error of the shape of the larger one: residuals of a shape are smaller. */
 static const double WEAK = 0.1;
 
-/* Probability that rows in company are doubted in a sound record because too many of them
- * are smaller than any that stands alone. */
-static const double UNLIKELY = 0.01;
-
 struct together {
 	struct evidence row[EVIDENCE_KEPT]; /* not doubted */
-	double any[EVIDENCE_KEPT];    /* logarithms of amplitudes, of doubted rows too */
-	int alone[EVIDENCE_KEPT];     /* all of these rows */
-	int followers[EVIDENCE_KEPT]; /* NEAR to FAR behind each; -1: it is weak */
-	double gap[EVIDENCE_KEPT];    /* to the next one of its sign, at most NEAR */
-	size_t rows, all;             /* taken in so far: not doubted, and all */
-	double density;               /* followers per duration */
-	double mean, sd, width;       /* of sizes, and of their kernel */
-	double astray;                /* share of delays that are not of the flow */
-	double flow_var, least_var;   /* variance of the others, and a bound of it */
-	double least;                 /* rows in company that are smaller are none */
-	double limit;                 /* probability beyond which rows are doubted */
+	int followers[EVIDENCE_KEPT];       /* NEAR to FAR behind each; -1: it is weak */
+	double gap[EVIDENCE_KEPT]; /* to the next one of its sign, at most NEAR */
+	size_t rows, all;          /* taken in so far: not doubted, and all */
+	double density;            /* followers per duration */
+	double mean, sd, width;    /* of sizes, and of their kernel */
+	double limit;              /* probability beyond which rows are doubted */
 };
 
 struct together *together_new(void)
@@ -259,83 +249,6 @@ static double half_probability(const struct together *t, double gap)
 	return fmax(1 - (random + 2 * sqrt(random)) / seen, 0);
 }
 
-/* The size of the smallest row that stands alone, if too many in company are smaller;
- * else -INFINITY.  In a sound record any row is as likely as any other to be the smallest
- * one, any of those left to be the next one, and so on. */
-static double least_alone(const struct together *t)
-{
-	double least = INFINITY, alone = 0, company = 0, chance = 1;
-
-	for (size_t i = 0; i < evidence_kept(t->all); i++)
-		if (t->alone[i]) {
-			least = fmin(least, t->any[i]);
-			alone++;
-		} else {
-			company++;
-		}
-	for (size_t i = 0; i < evidence_kept(t->all); i++)
-		if (!t->alone[i] && t->any[i] < least) {
-			chance *= company / (alone + company);
-			company--;
-		}
-	return chance < UNLIKELY ? least : -INFINITY;
-}
-
-/* Likelihood ratio of a delay that is anywhere in the range and one of the flow, normally
- * distributed within the range: a flow as wide as the range is not told from it. */
-static double astray_odds(const struct together *t, double off, double off_var)
-{
-	double var = t->flow_var + 2 * off_var;
-
-	return 0.5 * sqrt(2 * M_PI * var) * erf(1 / sqrt(2 * var)) *
-	       exp(fmin(0.5 * off * off / var, 300));
-}
-
-static double astray_probability(const struct together *t, double off, double off_var)
-{
-	double odds;
-
-	if (!(off_var > 0) || t->astray == 0)
-		return 0;
-	odds = t->astray / (1 - t->astray) * astray_odds(t, off, off_var);
-	return odds / (1 + odds);
-}
-
-/* The most likely share of delays that are not of the flow, among those of pulses fitted
- * with others, and the variance of the others, by expectation and maximisation. */
-static void learn_astray(struct together *t)
-{
-	enum { STEPS = 30 };
-	double gain = 0;
-
-	/* From a wide flow on: what it explains is not astray. */
-	t->astray = 0.1;
-	t->flow_var = 1;
-	for (int step = 0; step < STEPS; step++) {
-		double sum = 0, square = 0, n = 0;
-
-		for (size_t i = 0; i < evidence_kept(t->rows); i++)
-			if (t->row[i].off_var > 0) {
-				double p = astray_probability(
-					t, t->row[i].off, t->row[i].off_var);
-
-				sum += p;
-				square += (1 - p) * (t->row[i].off * t->row[i].off -
-							    2 * t->row[i].off_var);
-				n++;
-			}
-		t->astray = fmin(sum / fmax(n, 1), 0.5);
-		t->flow_var = fmax(square / fmax(n - sum, 1), t->least_var);
-	}
-	for (size_t i = 0; i < evidence_kept(t->rows); i++)
-		if (t->row[i].off_var > 0)
-			gain += 2 * log(1 - t->astray +
-					    t->astray * astray_odds(t, t->row[i].off,
-								t->row[i].off_var));
-	if (gain < LIKELIHOOD_CERTAIN)
-		t->astray = 0;
-}
-
 /* The largest probability, at most a half, up to which no more than SHARE of the rows are
  * wrong. */
 static double find_limit(const struct together *t)
@@ -363,15 +276,9 @@ static void tell(struct together *t, size_t first)
 		struct evidence *r = &t->row[self];
 
 		r->pair = pair_probability(t, self);
-		r->shape = !r->alone && r->size < t->least ? 1
-			   : r->weak                       ? shape_probability(t, r->size)
-							   : 0;
-		/* Not if the delay is more like those of the flow. */
-		r->astray = astray_odds(t, r->off, r->off_var) > 1
-				    ? astray_probability(t, r->off, r->off_var)
-				    : 0;
-		r->wrong = 1 - (1 - r->pair) * (1 - r->shape) * (1 - r->astray) *
-				       (1 - r->half) / (1 + r->exchange);
+		r->shape = r->weak ? shape_probability(t, r->size) : 0;
+		r->wrong = 1 - (1 - r->pair) * (1 - r->shape) * (1 - r->half) /
+				       (1 + r->exchange);
 	}
 }
 
@@ -383,20 +290,14 @@ static void test_some(
 
 	for (size_t i = begin; i < end; i++) {
 		t->followers[t->all % EVIDENCE_KEPT] = count_followers(a, i, n);
-		t->alone[t->all % EVIDENCE_KEPT] = a[i].alone;
-		t->gap[t->all % EVIDENCE_KEPT] = gap_before(a, i, n);
-		t->any[t->all++ % EVIDENCE_KEPT] = a[i].size;
+		t->gap[t->all++ % EVIDENCE_KEPT] = gap_before(a, i, n);
 		a[i].wrong = a[i].pair = 0;
 		if (a[i].doubted)
 			continue;
-		if (a[i].off_var > 0)
-			t->least_var = a[i].flow_var;
 		t->row[t->rows++ % EVIDENCE_KEPT] = a[i];
 	}
 	if (t->rows == first)
 		return;
-	t->least = least_alone(t);
-	learn_astray(t);
 	for (size_t i = first; i < t->rows; i++)
 		t->row[i % EVIDENCE_KEPT].half =
 			half_probability(t, t->row[i % EVIDENCE_KEPT].gap);
@@ -421,8 +322,6 @@ void together_test(struct together *t, double beside, struct evidence *a, size_t
 		a[i].size = log(fabs(a[i].amplitude));
 		a[i].beside = log(largest);
 		a[i].weak = fabs(a[i].amplitude) < WEAK * largest;
-		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
-			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}
 	for (size_t i = 0; i < n; i++)
 		a[i].gap = fmin(gap_before(a, i, n), gap_before(a, i + 1, n));

@@ -12,12 +12,6 @@
  * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
  * are more of them than particles as small come to lie beside larger ones at random.
  *
- * Particles arrive independently, so that those in company are as large as those alone.
- * Several smaller ones describe something else, such as a baseline.
- *
- * A pulse fitted to what others leave has any delay in the range searched.  How many such
- * there are follows from the delays of all pulses fitted with others.
- *
  * Two pulses may have exchanged their arrivals at sensor 2, with odds that the fit tells.
  *
  * Rows are doubted, the most likely ones first, until at most six in a thousand of the

@@ -5,10 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-	FEW = 8,    /* fewest delays for an estimate of the variance */
-	CLASSES = 8 /* of distance in a duration */
-};
+enum { FEW = 8 }; /* fewest delays for an estimate of the variance */
 
 struct delay {
 	double value, var;
@@ -23,8 +20,7 @@ struct validation {
 	struct flow flow, told;      /* as estimated, and as told before */
 	double place[EVIDENCE_KEPT]; /* of weak pulses beside the nearest larger one */
 	size_t places;
-	double distant[CLASSES], groups;
-	double signs[2]; /* pulses that are positive, and negative */
+	double groups;
 };
 
 struct validation *validation_new(void)
@@ -169,37 +165,20 @@ static size_t nearest_larger(const struct evidence *e, size_t m, size_t i)
 	return found;
 }
 
-/* Durations by which a pulse follows the nearest larger one; NAN: there is none, or their
- * velocities differ by more than the error. */
-static double place_of(const struct evidence *e, size_t m, size_t i)
+/* Durations by which a pulse follows the nearest larger one; NAN: there is none, it is
+ * less than twice as high, or their velocities differ by more than the error. */
+static double weak_place(const struct evidence *e, size_t m, size_t i)
 {
 	const struct evidence *l = &e[nearest_larger(e, m, i)];
 
-	return l != &e[i] && e[i].var > 0 &&
+	return fabs(e[i].amplitude) < 0.5 * fabs(l->amplitude) && e[i].var > 0 &&
 			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
 		       ? e[i].time - l->time
 		       : NAN;
 }
 
-/* The same of a pulse that is less than half as high as the larger one. */
-static double weak_place(const struct evidence *e, size_t m, size_t i)
-{
-	return fabs(e[i].amplitude) < 0.5 * fabs(e[nearest_larger(e, m, i)].amplitude)
-		       ? place_of(e, m, i)
-		       : NAN;
-}
-
-/* Class of the distance, whichever of both is first, within a duration; else -1. */
-static int distance_of(const struct evidence *e, size_t m, size_t i)
-{
-	double apart = fabs(place_of(e, m, i));
-
-	return apart < 1 ? (int)(apart * CLASSES) : -1;
-}
-
-/* Probability that noise alone moves as many delays of a group to the limits, or that
- * chance puts as many weak pulses at one place: at most one correct group in ten thousand
- * is doubted for either. */
+/* Probability that chance puts as many weak pulses at one place: at most one correct
+ * group in ten thousand is doubted. */
 static const double RARELY = 1e-4;
 
 /* 1 - the probability that a Poisson number is less than count. */
@@ -237,103 +216,32 @@ static int recurs(
 	       poisson_tail(here, (around + 1) / 3.0) * (double)kept < RARELY;
 }
 
-/* 1 if the distance is more frequent than a smaller one, by four standard deviations and
- * in a tenth of all groups.  Of particles, which arrive independently, none is, beyond
- * the first class, in which two may be fitted as one; of pulses fitted to a pulse of
- * another shape it is.  The class before may hold the same distances. */
-static int is_favourite(
-	const struct validation *v, const struct evidence *e, size_t m, size_t i)
-{
-	int k = distance_of(e, m, i);
-	double here = k < 0 ? 0 : v->distant[k], least = here;
-
-	for (int j = 1; j < k - (k > 2); j++)
-		least = fmin(least, v->distant[j]);
-	return here - least > fmax(0.1 * v->groups, SIGMAS_RARELY * sqrt(here + least));
-}
-
-/* --- signs */
-
-static void count_signs(const struct evidence *e, size_t m, double count[2])
-{
-	count[0] = count[1] = 0;
-	for (size_t i = 0; i < m; i++)
-		count[e[i].amplitude < 0] += e[i].pulse;
-}
-
-/* 1 if the signs of a group are those of noise, either as probable, and not those of the
- * particles of other groups, by the rule of succession.  A group of noise is as rare as a
- * first particle of the other sign, so that this alone is believed however many there
- * were before. */
-static int has_other_signs(const struct validation *v, const struct evidence *e, size_t m)
-{
-	double own[2], all = v->signs[0] + v->signs[1], odds = 0;
-
-	count_signs(e, m, own);
-	for (int k = 0; k < 2; k++)
-		odds += own[k] * log(0.5 * (all - own[0] - own[1] + 2) /
-					 (v->signs[k] - own[k] + 1));
-	return odds > fmax(0.5 * LIKELIHOOD_CERTAIN, log(all + 2));
-}
-
 /* --- the test */
 
 static void take_in(struct validation *v, const struct evidence *e, size_t n)
 {
-	double sign[2];
-
 	for (size_t i = 0, m; i < n; i += m) {
 		m = group_size(e, i, n);
 		take_delay(v, e + i, m);
 		v->groups++;
-		count_signs(e + i, m, sign);
-		v->signs[0] += sign[0];
-		v->signs[1] += sign[1];
 		for (size_t k = 0; k < m; k++) {
 			double place = weak_place(e + i, m, k);
-			int distance = distance_of(e + i, m, k);
 
 			if (!isnan(place))
 				v->place[v->places++ % EVIDENCE_KEPT] = place;
-			if (distance >= 0)
-				v->distant[distance]++;
 		}
 	}
 	learn_flow(v);
 }
 
-/* 1 if more delays lie at a limit of the range than noise explains, without those of
- * pulses that do not fit, which are doubted already.  Their number is treated as Poisson
- * distributed, which has the longer tail. */
-static int too_many_at_limit(
-	const struct validation *v, const struct evidence *e, size_t m)
-{
-	double mean = 0;
-	int count = 0;
-
-	if (!(v->half > 0) || isinf(v->flow.var))
-		return 0;
-	for (size_t i = 0; i < m; i++) {
-		double sd = sqrt(v->flow.var + e[i].var), off = v->flow.mean - v->middle;
-
-		if (!(e[i].var > 0) || !e[i].fits)
-			continue;
-		mean += 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
-				      erfc((v->half + off) / (M_SQRT2 * sd)));
-		count += fabs(e[i].delay - v->middle) > (1 - 1e-6) * v->half;
-	}
-	return poisson_tail(count, mean) < RARELY;
-}
-
 static void test_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m) ||
-			 has_other_signs(v, e, m);
+	int impossible = is_impossible(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
 	for (size_t i = 0; i < m; i++)
-		if (recurs(v, e, m, i) || is_favourite(v, e, m, i))
+		if (recurs(v, e, m, i))
 			e[i].doubted = e[nearest_larger(e, m, i)].doubted = 1;
 }
 

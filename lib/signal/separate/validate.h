@@ -9,9 +9,7 @@
  * that stand alone.
  *
  * A weak pulse that recurs at one distance from a strong one of the same velocity is an
- * error of the shape of the strong one, and two of any height that often have one
- * distance, within a duration, are one object of another shape.  A group whose signs are
- * those of noise, not those of the other groups, is none of particles.
+ * error of the shape of the strong one.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not like the learned one, and no row is believed.
@@ -37,18 +35,14 @@ struct evidence {
 	int pulse;                 /* 1: it is one */
 	double odds[JOINT_SHARES]; /* of being two, for one other arrival per duration */
 	double exchange; /* odds of having the arrival of another pulse at sensor 2 */
-	/* Of a pulse fitted with others: its delay less that of the flow, over half of
-	 * the range searched, and the variance of this; 0: not known.  flow_var: least
-	 * variance of such delays in the flow. */
-	double off, off_var, flow_var;
 	/* Set by together_test(): probabilities of being a pair, half of a pulse, an
-	 * error of the shape of a larger one, not of the flow, and any of these; */
-	double pair, half, shape, astray, wrong;
+	 * error of the shape of a larger one, and any of these; */
+	double pair, half, shape, wrong;
 	/* logarithms of the amplitude and of that of the largest pulse that it overlaps;
-	 * 1: it is much smaller than that; 1: it is by itself. */
+	 * 1: it is much smaller than that. */
 	double size, beside;
 	double gap; /* to the nearer neighbour; INFINITY: far */
-	int weak, alone;
+	int weak;
 };
 
 /* Latest rows, by which others are tested: they know a share of 0.7 % to 0.5 %. */
