@@ -103,6 +103,9 @@ ballcal --balls copies.tsv:100um >cal.tsv 2>err
 is "copies of one pulse, which have no scatter, are marked" "$? $(grep -c 'all 5 pulses are equal' err)" "3 1"
 ballcal --balls copies.tsv:100um --balls copies8.tsv:200um >cal.tsv 2>err
 is "rounding of equal pulses does not change the exponent" "$(value exponent_p) $(grep -c 'the exponent is' err)" "1 0"
+printf '# doubtful: pulses differ\n' | cat single.tsv - >self.tsv
+ballcal --balls self.tsv:100um >cal.tsv 2>err
+is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'own account: pulses differ' err)" "3 1"
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 ln -s 1.tsv same.tsv

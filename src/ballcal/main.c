@@ -59,6 +59,7 @@ struct pulses {
 	double speed;     /* sum of velocities */
 	int signs[2];     /* tables of positive and of negative amplitudes */
 	int equal;        /* tables of pulses that do not differ */
+	int doubted;      /* a table is, by its own account */
 	double outlier_p; /* the least of the tables; nan: none has three pulses */
 	double squares;   /* sum of the squared standard errors of the amplitudes */
 };
@@ -111,7 +112,7 @@ static void compare(struct pulses *p, size_t from, const char *name)
 		least = fmin(least, a[i]);
 		most = fmax(most, a[i]);
 	}
-	if (n > 1 && most - least <= 1e-12 * most) { /* rounding */
+	if (n > 2 && most - least <= 1e-12 * most) { /* rounding */
 		warn("%s: all %zu pulses are equal: their scatter is unknown", name, n);
 		p->equal++;
 	}
@@ -162,6 +163,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	p->signs[sign < 0]++;
 	compare(p, before, table_name(t));
+	p->doubted |= verdict_doubted(t);
 	table_close(t);
 	free(path);
 }
@@ -292,7 +294,8 @@ int main(int argc, char **argv)
 	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
 	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY ||
-		   p.outlier_p < UNLIKELY || p.equal || (p.signs[0] && p.signs[1]);
+		   p.outlier_p < UNLIKELY || p.equal || p.doubted ||
+		   (p.signs[0] && p.signs[1]);
 	if (p.signs[0] && p.signs[1])
 		warn("amplitudes are positive in %d tables and negative in %d: balls of several "
 		     "materials have no constant in common",
