@@ -237,7 +237,7 @@ is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'sel
 # half of a section of length T lies within sqrt(3) standard errors, T / sqrt(12), of its middle
 for se in 0.57 0.58; do
 	printf 'time1\ttime1_se\tdiameter\tverdict\tsources\n1\t0\t60e-6\talone\t1\n12\t%s\t60e-6\tunresolved\t40\n' \
-		$(awk -v s=$se 'BEGIN { print 2 * s }') >long.tsv
+		"$(awk -v s=$se 'BEGIN { print 2 * s }')" >long.tsv
 	debriscount --period 10s --duration 20s long.tsv >out 2>err
 	echo "$? $(grep -c '1 sections that are not resolved reach beyond their period' err)"
 done >across
