@@ -87,6 +87,25 @@ ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:
 is "three tables of one size do not determine the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
 ballcal --balls 60.tsv:60um --balls negative.tsv:100um >out 2>err
 is "tables of either sign are marked" "$? $(grep -c 'positive in 1 tables and negative in 1' err)" "3 1"
+# Two balls at once among nine single ones, whose scatter is 0.5 %: Grubbs' statistic is within 1e-3 of its maximum,
+# t of 8 degrees of freedom about 150
+awk 'BEGIN { print "amplitude\tvelocity"; for (i = 0; i < 10; i++)
+	printf "%.17g\t%g\n", (i == 3 ? 2 : 1 + (i % 3 - 1) * 0.005) * (1 + i / 10), 1 + i / 10 }' >two.tsv
+ballcal --balls two.tsv:100um >cal.tsv 2>err
+is "a pulse of two balls at once is named and marked" "$? $(grep -c 'two.tsv: pulse 4 of 10' err)" "3 1"
+rising "it is no pulse of one ball" 0 "$(value outlier_p)" 1e-9
+awk 'NR != 5' two.tsv >single.tsv
+ballcal --balls single.tsv:100um >cal.tsv 2>err
+is "the others are not marked" "$? $(wc -l <err)" "0 0"
+awk 'BEGIN { print "amplitude\tvelocity"; for (i = 0; i < 5; i++) print "1\t12.7" }' >copies.tsv
+awk 'NR == 1 { print; next } { print 8 * $1 "\t" $2 }' copies.tsv >copies8.tsv
+ballcal --balls copies.tsv:100um >cal.tsv 2>err
+is "copies of one pulse, which have no scatter, are marked" "$? $(grep -c 'all 5 pulses are equal' err)" "3 1"
+ballcal --balls copies.tsv:100um --balls copies8.tsv:200um >cal.tsv 2>err
+is "rounding of equal pulses does not change the exponent" "$(value exponent_p) $(grep -c 'the exponent is' err)" "1 0"
+printf '# doubtful: pulses differ\n' | cat single.tsv - >self.tsv
+ballcal --balls self.tsv:100um >cal.tsv 2>err
+is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'own account: pulses differ' err)" "3 1"
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 ln -s 1.tsv same.tsv

@@ -96,4 +96,7 @@ is 'a truncated table is refused' "$? $(wc -l <err)" '1 1'
 wear-volume truth >volume
 records --replay volume >again 2>err
 same 'the recorded pipeline reproduces the table' volume again
+printf 't\tdiameter\n1\t60e-6\n# doubtful: pulses differ\n' >self.tsv
+wear-volume self.tsv >out 2>err
+is 'a table that calls itself doubtful is marked by status 3' "$? $(grep -c 'own account: pulses differ' err)" '3 1'
 done_testing

@@ -98,9 +98,33 @@ double line_lack_of_fit(const double *x, const double *y, size_t n, const struct
 		groups - 2, (double)n - groups);
 }
 
+double line_outlier_p(const double *y, size_t n, size_t *farthest)
+{
+	double mean = 0, squares = 0, count = (double)n, most, t2;
+
+	for (size_t i = 0; i < n; i++)
+		mean += y[i] / count;
+	*farthest = 0;
+	for (size_t i = 0; i < n; i++) {
+		squares += (y[i] - mean) * (y[i] - mean);
+		if (fabs(y[i] - mean) > fabs(y[*farthest] - mean))
+			*farthest = i;
+	}
+	if (n < 3 || !(squares > 0))
+		return NAN;
+	most = pow(y[*farthest] - mean, 2) * count / (squares * (count - 1));
+	t2 = (count - 2) * most / fmax(1 - most, 0);
+	return fmin(1, 2 * count * gsl_cdf_tdist_Q(sqrt(t2), count - 2));
+}
+
+/* Of logarithms of up to 30, over sizes that differ by 1 % or more. */
+static const double ROUNDING = 1e-12;
+
 double line_slope_p(const struct line *l, double want)
 {
+	if (fabs(l->slope - want) <= ROUNDING)
+		return 1;
 	if (!(l->slope_se > 0))
-		return l->slope == want ? 1 : 0;
+		return 0;
 	return 2 * gsl_cdf_tdist_Q(fabs(l->slope - want) / l->slope_se, l->degrees);
 }

@@ -41,6 +41,11 @@ void line_allow_unequal(
  * each. */
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
 
+/* Grubbs' test (Technometrics 11, 1969, page 1): the farthest of n normal numbers from
+ * their mean, and the p-value of the hypothesis that it is one of them; NAN with fewer
+ * than three numbers or equal ones. */
+double line_outlier_p(const double *y, size_t n, size_t *farthest);
+
 /* p-value of the hypothesis that the true slope is want. */
 double line_slope_p(const struct line *l, double want);
 

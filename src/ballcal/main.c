@@ -56,9 +56,12 @@ struct pulse {
 struct pulses {
 	struct pulse *pulse;
 	size_t n, room;
-	double speed;   /* sum of velocities */
-	int signs[2];   /* tables of positive and of negative amplitudes */
-	double squares; /* sum of the squared standard errors of the amplitudes */
+	double speed;     /* sum of velocities */
+	int signs[2];     /* tables of positive and of negative amplitudes */
+	int equal;        /* tables of pulses that do not differ */
+	int doubted;      /* a table is, by its own account */
+	double outlier_p; /* the least of the tables; nan: none has three pulses */
+	double squares;   /* sum of the squared standard errors of the amplitudes */
 };
 
 /* Reads "FILE:DIAMETER"; fresh memory. */
@@ -97,6 +100,32 @@ static double amplitude_of(const struct table_in *t, int column, double *sign)
 	return fabs(a);
 }
 
+/* Pulses of one table, whose balls are equal: one of another particle changes the mean,
+ * and copies of one tell nothing about their scatter. */
+static void compare(struct pulses *p, size_t from, const char *name)
+{
+	size_t n = p->n - from, far;
+	double *a = xcalloc(n, sizeof *a), least = INFINITY, most = 0, outlier;
+
+	for (size_t i = 0; i < n; i++) {
+		a[i] = exp(p->pulse[from + i].response);
+		least = fmin(least, a[i]);
+		most = fmax(most, a[i]);
+	}
+	if (n > 2 && most - least <= 1e-12 * most) { /* rounding */
+		warn("%s: all %zu pulses are equal: their scatter is unknown", name, n);
+		p->equal++;
+	}
+	outlier = fmin(1, balls.n * line_outlier_p(a, n, &far));
+	if (n > 2 && outlier < UNLIKELY)
+		warn("%s: pulse %zu of %zu, of %.3g V s/m, is not of the same ball as the "
+		     "others, p = %.2g",
+			name, far + 1, n, a[far], outlier);
+	if (n > 2)
+		p->outlier_p = fmin(p->outlier_p, outlier);
+	free(a);
+}
+
 static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
@@ -133,6 +162,8 @@ static void read_balls(struct pulses *p, const char *text, int table)
 	if (p->n == before)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	p->signs[sign < 0]++;
+	compare(p, before, table_name(t));
+	p->doubted |= verdict_doubted(t);
 	table_close(t);
 	free(path);
 }
@@ -216,7 +247,7 @@ static void put_smallest(struct table_out *t, double ln_k, double half, double s
 
 int main(int argc, char **argv)
 {
-	struct pulses p = { 0 };
+	struct pulses p = { .outlier_p = NAN };
 	struct table_out *t;
 	struct line l;
 	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, lack;
@@ -262,8 +293,9 @@ int main(int argc, char **argv)
 	}
 	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
-	doubtful =
-		doubt.slope_p < UNLIKELY || lack < UNLIKELY || (p.signs[0] && p.signs[1]);
+	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY ||
+		   p.outlier_p < UNLIKELY || p.equal || p.doubted ||
+		   (p.signs[0] && p.signs[1]);
 	if (p.signs[0] && p.signs[1])
 		warn("amplitudes are positive in %d tables and negative in %d: balls of several "
 		     "materials have no constant in common",
@@ -291,6 +323,7 @@ int main(int argc, char **argv)
 		put(t, "exponent_p", "1", doubt.slope_p, NAN, NAN);
 		put(t, "lack_of_fit_p", "1", lack, NAN, NAN);
 	}
+	put(t, "outlier_p", "1", p.outlier_p, NAN, NAN);
 	if (isnan(noise))
 		noise = sqrt(p.squares / (double)p.n);
 	if (!isnan(duration))

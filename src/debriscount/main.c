@@ -165,9 +165,11 @@ static double count_rows(
 {
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
 	int cv = verdict_column(t), cs = table_find(t, "sources");
-	int cb = by ? table_need(t, by) : -1;
-	double last = 0, late = 0, begin = 0, end = groups_next(groups), hardly = 0,
-	       diameter;
+	/* That of the middle of an unresolved section tells its length. */
+	int ce = table_find_quantity(t, "time1_se", UNIT_TIME),
+	    cb = by ? table_need(t, by) : -1;
+	double last = 0, late = 0, across = 0, begin = 0, end = groups_next(groups),
+	       hardly = 0, diameter;
 	long part = table_part(t), records = 1;
 
 	if (ct < 0 && !isnan(period))
@@ -208,6 +210,10 @@ static double count_rows(
 		last = fmax(last, time);
 		name = cb >= 0 ? table_text(t, cb) : "";
 		if (v == VERDICT_UNRESOLVED) {
+			double half = ce >= 0 ? sqrt(3) * table_number(t, ce) : 0;
+
+			across += !isnan(period) &&
+				  (time - half < begin || time + half > end);
 			groups_add_stretch(groups, name, or_nan(t, cs, table_positive),
 				or_nan(t, cd, table_diameter));
 			continue;
@@ -221,6 +227,12 @@ static double count_rows(
 		warn("%.0f particles arrived after the end of their period and are counted in a later one",
 			late);
 		stats_set("particles_late", late);
+		groups_doubtful(groups);
+	}
+	if (across > 0) {
+		warn("%.0f sections that are not resolved reach beyond their period and are "
+		     "counted in that of their middle: a longer --period tells better",
+			across);
 		groups_doubtful(groups);
 	}
 	if (records > 1 && !isnan(duration))
@@ -271,6 +283,8 @@ int main(int argc, char **argv)
 	if (!non_ferrous_known() &&
 		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&
 		verdict_equivalent())
+		groups_doubtful(groups);
+	if (verdict_doubted(t))
 		groups_doubtful(groups);
 	table_close(t);
 	status = groups_alarm(groups) ? EXIT_ALARM : groups_status(groups);

@@ -267,8 +267,6 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		value[LARGEST + q] = sum->largest * scale;
 		possible[q] = sum->possible * scale;
 	}
-	if (r->par.output == REPORT_TREND && !whole)
-		return;
 	/* In part of a period one particle may be a high rate, and none tells nothing. */
 	watched = value[RATE + r->par.alarm_mass] *
 		  (whole ? 1 : (end - begin) / r->par.period);
@@ -276,6 +274,8 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		h->alarm = 1;
 	else if (whole && watched < r->par.clear)
 		h->alarm = 0;
+	if (r->par.output == REPORT_TREND && !whole)
+		return;
 	remember(r, h, value);
 	if (r->par.output == REPORT_CLASSES)
 		put_classes(r, c, group, begin, end, h->alarm);

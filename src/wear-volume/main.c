@@ -139,7 +139,7 @@ int main(int argc, char **argv)
 	const char *start = table_key(t, "start");
 	struct table_out *out;
 	char *cmd;
-	int equivalent;
+	int doubtful;
 
 	find_columns(t);
 	cmd = opt_cmd(table_upstream(t), NULL);
@@ -148,9 +148,9 @@ int main(int argc, char **argv)
 		table_comment(out, "start", "%s", start);
 	sum_rows(t, out);
 	verdict_report();
-	equivalent = verdict_equivalent();
+	doubtful = verdict_equivalent() | verdict_doubted(t);
 	table_close(t);
 	table_done(out);
 	free(cmd);
-	return shell_done(equivalent ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -142,8 +142,9 @@ static void check_codes(void)
 static void check_lines(void)
 {
 	enum { N = 60, RUNS = 2000 };
-	double x[N], y[N], held = 0, lack = 0, slope = 0;
+	double x[N], y[N], held = 0, lack = 0, slope = 0, outlier = 0, found = 0;
 	struct line l;
+	size_t far;
 
 	for (int run = 0; run < RUNS; run++) {
 		for (int i = 0; i < N; i++) {
@@ -157,6 +158,11 @@ static void check_lines(void)
 		held += fabs(l.slope - 3) < l.t * l.slope_se;
 		lack += line_lack_of_fit(x, y, N, &l) < 0.1;
 		slope += line_slope_p(&l, 3) < 0.1;
+		for (int i = 0; i < N; i++)
+			y[i] -= 3 * x[i];
+		outlier += line_outlier_p(y, N, &far) < 0.1;
+		y[17] += 8;
+		found += line_outlier_p(y, N, &far) < 0.01 && far == 17;
 	}
 	/* sd 0.7 % */
 	near(held / RUNS, 0.9, 0.025,
@@ -165,6 +171,11 @@ static void check_lines(void)
 		"the test of fit at 10 % rejects a straight line in 10 % of the cases");
 	near(slope / RUNS, 0.1, 0.025,
 		"the test of the slope rejects the true one as often as stated");
+	/* Bonferroni's inequality: slightly below */
+	near(outlier / RUNS, 0.095, 0.02,
+		"the test of outliers at 10 % finds one in 10 % of the cases without");
+	ok(found / RUNS > 0.99, "it finds one of eight deviations in all but %g of 2000",
+		RUNS - found);
 	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points have no interval");
 }
 
