@@ -155,9 +155,10 @@ static int is_doubtful(
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_CHANGED || doubt == SEPARATE_COVERED ||
-		doubt == SEPARATE_UNLEARNED || doubt == SEPARATE_UNEXPLAINED ||
-		doubt == SEPARATE_UNLIKE || doubt == SEPARATE_COUNTLESS)
+	if ((doubt == SEPARATE_NOISE && !kept) || doubt == SEPARATE_CHANGED ||
+		doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
+		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE ||
+		doubt == SEPARATE_COUNTLESS)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

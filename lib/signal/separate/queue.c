@@ -97,8 +97,10 @@ static void test_pairs(struct separate *s, struct evidence *a, size_t n)
 			q[i].row.verdict = SEPARATE_MISFIT;
 			if (fmax(a[m - 1].shape, a[m - 1].half) > a[m - 1].pair)
 				s->counters.misfits++;
-			else
+			else {
 				s->counters.together++;
+				q[i].row.together = 1;
+			}
 		}
 }
 

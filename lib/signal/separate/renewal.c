@@ -39,6 +39,7 @@ struct renewal {
 	double *raw;
 	size_t raw_room;
 	long long from, upto; /* frames in raw */
+	double spent;         /* on stretches that do not fit: work, separate_spent() */
 	long long retry;      /* no other stretch is tried before this frame */
 	int ended;
 	struct transit *row; /* released */
@@ -156,7 +157,8 @@ static int doubts(const struct transit *p)
 										    : 1;
 }
 
-/* Logarithm of the likelihood ratio of a row, of shares HALF and OFTEN doubted. */
+/* Logarithm of the likelihood ratio of a row, of shares HALF and OFTEN doubted.  Two
+ * particles that arrive together do not tell of the instrument. */
 static double change_of(const struct transit *p)
 {
 	int d = doubts(p);
@@ -276,7 +278,7 @@ static enum separate_status look(struct renewal *r)
 	} else if (learn == 0) {
 		return SEPARATE_OK;
 	}
-	if (r->upto < r->retry)
+	if (r->upto < r->retry || r->spent >= separate_allowed(now->s))
 		return release(r);
 	origin = origin > r->from ? origin : r->from;
 	return begin(r, &r->next, origin, learn) ? SEPARATE_OK : SEPARATE_MEMORY;
@@ -302,6 +304,21 @@ static enum separate_status renew(struct renewal *r)
 	return release(r);
 }
 
+/* 1 if the next stretch has as many rows that are not doubted as there are among the rows
+ * held back that arrive before its last one. */
+static int is_as_good(const struct renewal *r)
+{
+	const struct stretch *t = &r->next;
+	long more = 0;
+
+	for (size_t i = 0; i < t->rows; i++)
+		more += doubts(&t->row[i]) == 0;
+	for (size_t i = 0; i < r->now.rows && t->rows > 0; i++)
+		more -= doubts(&r->now.row[i]) == 0 &&
+			r->now.row[i].t1 <= t->row[t->rows - 1].t1;
+	return more >= 0;
+}
+
 /* Judges the next stretch by its rows, once they tell; *again: 1 if this has changed
  * anything. */
 static enum separate_status judge(struct renewal *r, int *again)
@@ -321,10 +338,12 @@ static enum separate_status judge(struct renewal *r, int *again)
 	*again = 1;
 	if (t->status == SEPARATE_MEMORY)
 		return SEPARATE_MEMORY;
-	if (t->sum <= -log(CERTAIN) && is_described(t))
+	if (t->sum <= -log(CERTAIN) && is_described(t) && is_as_good(r))
 		return renew(r);
+	r->spent += separate_spent(t->s);
 	drop(t);
-	if (learn >= r->now.learn / LEAST_PART && learn >= SEPARATE_SHORTEST)
+	if (r->spent < separate_allowed(r->now.s) && learn >= r->now.learn / LEAST_PART &&
+		learn >= SEPARATE_SHORTEST)
 		return begin(r, t, origin, learn) ? SEPARATE_OK : SEPARATE_MEMORY;
 	r->retry = 2 * r->upto;
 	return release(r);

@@ -66,6 +66,16 @@ const struct separate_counters *separate_counters(const struct separate *s)
 	return &s->counters;
 }
 
+double separate_spent(const struct separate *s)
+{
+	return s->effort + (s->joint ? joint_work(s->joint) : 0);
+}
+
+double separate_allowed(const struct separate *s)
+{
+	return separate_effort(s, s->counters.samples);
+}
+
 static int is_foreign(
 	const struct separate_counters *c, const struct separate_counters *before)
 {
@@ -370,7 +380,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 
 	if (!s->calibrated)
 		return s->unexplained ? SEPARATE_UNEXPLAINED : SEPARATE_BELIEVED;
-	if (s->par.kept && separate_is_other_noise(s))
+	if (separate_is_other_noise(s))
 		return SEPARATE_NOISE;
 	if (s->par.kept && c->rows > 2 && c->negative > REVERSED * c->rows)
 		return SEPARATE_REVERSED;

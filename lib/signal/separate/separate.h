@@ -40,6 +40,7 @@ struct transit {
 	double phase, phase_se;
 	double chi2; /* of the section per degree of freedom */
 	enum separate_verdict verdict;
+	int together; /* 1: a misfit because it may be two particles */
 };
 
 /* What is known about a section when it is done. */
@@ -148,10 +149,13 @@ const struct calibration *separate_calibration(
 /* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
  * of s.  0: not yet, some rows of what is learned from are still to be tested. */
 int separate_instrument(const struct separate *s, struct instrument *view);
-/* Noise of both channels relative to that of the kept instrument, from up to par.learn
- * samples. */
+/* Noise of both channels relative to that of the kept instrument, or to that it was
+ * learned from, from up to par.learn samples. */
 void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
+/* Samples of pulses computed, and those that may be up to now. */
+double separate_spent(const struct separate *s);
+double separate_allowed(const struct separate *s);
 /* Goes on counting after another one that had counted this.  foreign: 1 if the rows of
  * that were doubtful. */
 void separate_continue(struct separate *s, const struct separate *last,
@@ -161,7 +165,7 @@ enum separate_doubt {
 	SEPARATE_BELIEVED,   /* they are not */
 	SEPARATE_FOREIGN,    /* so many pulses fit no particle that none is believed */
 	SEPARATE_CHANGED,    /* so did too many before the instrument was learned again */
-	SEPARATE_NOISE,      /* the noise is not that of the kept instrument */
+	SEPARATE_NOISE,      /* the noise is not that of the instrument */
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */

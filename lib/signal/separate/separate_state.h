@@ -72,6 +72,10 @@ struct separate {
 	int varies[2];              /* 1: the sensor has not been constant so far */
 	double first[CHANNELS_MAX]; /* frame of a record with a kept instrument */
 	double level[CHANNELS_MAX], levels;
+	/* Level of the same samples and of the last ones, as they are fitted, and whether
+	 * and how much it has changed. */
+	double fitted[CHANNELS_MAX], last_level[CHANNELS_MAX], last_levels, change[2];
+	int changed;
 	long long level_at;
 	int looked;         /* 1: the first samples have been examined */
 	int crowded;        /* 1: long sections hold too many pulses */
@@ -124,7 +128,7 @@ struct separate {
 	int holding, group;
 	double *source;
 	struct separate_counters counters, before; /* before: at the first sample */
-	int was_foreign; /* 1: what came before fitted no particle */
+	int was_foreign;                /* 1: what came before fitted no particle */
 	enum separate_status reason;    /* why nothing could be learned */
 	struct bursts_power nothing[2]; /* of the last noise that had nothing in common */
 	int unexplained; /* 1: although a channel stands out of its noise */
@@ -270,8 +274,8 @@ void separate_average(struct separate *s, int ratio);
 
 /* noise_level.c; separate_noise() as well */
 
-/* Measures the noise of both channels in the prepared samples, up to as many samples as
- * are used for learning. */
+/* Measures the noise of both channels in the prepared samples, as many at a time as are
+ * used for learning. */
 void separate_measure_level(struct separate *s);
 int separate_is_other_noise(const struct separate *s);
 
