@@ -7,13 +7,16 @@
 #ifndef LIFE_NOISE_H
 #define LIFE_NOISE_H
 
-enum { NOISE_WINDOW = 256 }; /* residuals kept */
+/* Residuals kept.  Over those of the observations, the errors of the filtered states of
+ * ten simulated kinds are .618, .616 and .614 with 20, 40 and 256; over those of the last
+ * value, the errors of the predictions of 31 measured series are .234, .231 and .231. */
+enum { NOISE_WINDOW = 40 };
 
 /* All 0 at first. */
 struct noise {
 	double y[2], gap; /* the two last observations and the gap between them */
 	long rows;
-	double residual[NOISE_WINDOW], sorted[NOISE_WINDOW];
+	double residual[NOISE_WINDOW];
 	double scale; /* standard deviation; 0 below three rows or for an exact line */
 };
 
