@@ -4,7 +4,6 @@
 #include "cli/stats.h"
 #include "common/covariates.h"
 #include "fragments.h"
-#include "life/pair/remaining.h"
 #include "life/trend/passage.h"
 #include "life_table.h"
 #include "observations.h"

@@ -1,6 +1,6 @@
 /* A unit whose gap opens evenly: lives in closed form; pair and slope. */
 #include "life/pair/forecast.h"
-#include "life/pair/remaining.h"
+#include "life/score/metrics.h"
 #include "num/rng.h"
 #include "num/running.h"
 #include "tap.h"
@@ -158,7 +158,7 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 		forecast_add(f, k, value, pair_gap(&pair, par.quantity, value), 0);
 	}
 	row = forecast_at(f, now);
-	remaining_sum_up(row.life, (size_t)row.n, INFINITY);
+	metric_cut(row.life, (size_t)row.n, INFINITY);
 	left = end - now;
 	low = row.life[(int)(0.05 * COUNT)];
 	high = row.life[(int)(0.95 * COUNT)];

@@ -1,5 +1,4 @@
 #include "life/pair/forecast.h"
-#include "life/pair/remaining.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
 #include <math.h>

@@ -1,8 +1,8 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
+#include "life/score/metrics.h"
 #include "life/trend/passage.h"
-#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -123,17 +123,13 @@ enum num_status predict_life(struct predict *p, double *life)
 {
 	double horizon = p->par.horizon;
 	enum num_status status = draw_lives(p, life);
-	int n = predict_draws(p);
 
 	if (status != NUM_OK)
 		return status;
 	if (!(horizon > 0))
 		horizon = p->par.bank.n_more > 0 ? INFINITY
 						 : 10 * (p->now.last - p->now.first);
-	for (int i = 0; i < n; i++)
-		if (!(life[i] <= horizon))
-			life[i] = INFINITY;
-	sort_numbers(life, (size_t)n);
+	metric_cut(life, (size_t)predict_draws(p), horizon);
 	return NUM_OK;
 }
 
