@@ -13,6 +13,7 @@ struct forecast {
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
+	double threshold;        /* of the bank */
 	double load[BANK_LOADS];
 	double *life, *later; /* remaining times at the latest observation, and now */
 	long rows, n;
@@ -37,7 +38,8 @@ static enum num_status open_bank(struct forecast *f)
 	if (par->scaled)
 		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
-	bank.threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
+	f->threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
+	bank.threshold = f->threshold;
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {
 		f->other = (struct bank_shape){ .family = BANK_OTHER,
 			.par = f->by_gap ? -2 : 2. / 3,
@@ -59,7 +61,6 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 	f->par = *par;
 	f->paths = paths;
 	f->grey = NAN;
-	f->observed.rule = par->rule;
 	f->life = calloc((size_t)par->count, sizeof *f->life);
 	f->later = calloc((size_t)par->count, sizeof *f->later);
 	if (par->rule == RATE_FILTER)
@@ -89,24 +90,17 @@ void forecast_free(struct forecast *f)
 static enum num_status passages(struct forecast *f, double t, double y, int run_in,
 	int later, const double **passage)
 {
-	double limit = pair_limit(&f->par.pair), threshold;
-
 	*passage = NULL;
 	if (f->bank && !run_in && later)
 		bank_add(f->bank, t, y);
-	if (f->par.rule != RATE_FILTER)
-		return NUM_OK;
-	if (!f->bank) {
-		for (long i = 0; i < f->par.count; i++)
-			f->later[i] = INFINITY;
-		*passage = f->later;
-		return NUM_OK;
-	}
-	threshold = f->by_gap ? limit : pair_value(&f->par.pair, f->par.quantity, limit);
-	if (!bank_ready(f->bank))
+	if (f->par.rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
 		return NUM_OK;
 	*passage = f->later;
-	return bank_draw(f->bank, f->chances, t, threshold, f->later);
+	if (f->bank)
+		return bank_draw(f->bank, f->chances, t, f->threshold, f->later);
+	for (long i = 0; i < f->par.count; i++)
+		f->later[i] = INFINITY;
+	return NUM_OK;
 }
 
 void forecast_load(struct forecast *f, const double load[BANK_LOADS])
@@ -153,8 +147,8 @@ enum num_status forecast_add(
 	f->n = paths_predict(
 		f->paths, &f->observed, passage, pair_limit(pair), error, f->life);
 	if (f->par.grey)
-		f->grey = observed_grey(&f->observed,
-			pair_value(pair, f->par.quantity, pair_limit(pair)));
+		f->grey = grey_life(&f->observed.grey,
+			pair_value(pair, par->quantity, pair_limit(pair)), 1, 0, 0);
 	return NUM_OK;
 }
 

@@ -195,7 +195,7 @@ static double draw_error(const struct paths *e, long i)
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life)
 {
-	double left = limit - observed_gap(o), rate = observed_rate(o);
+	double left = limit - observed_gap(o), rate = observed_rate(o, e->par.rule);
 	int filtered = e->par.rule == RATE_FILTER;
 	double scaled = INFINITY; /* step time by which the mean wears as observed */
 
