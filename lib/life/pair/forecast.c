@@ -8,14 +8,14 @@
 struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
+	const struct paths_par *draws; /* of paths */
 	struct observed observed;
 	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, to tell repairs */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
 	double threshold;        /* of the bank */
-	double load[BANK_LOADS];
-	double *life, *later; /* remaining times at the latest observation, and now */
+	double *life, *later;    /* remaining times at the latest observation, and now */
 	long rows, n;
 	double first_t, grey;
 };
@@ -60,13 +60,14 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 		return NULL;
 	f->par = *par;
 	f->paths = paths;
+	f->draws = paths_par(paths);
 	f->grey = NAN;
-	f->life = calloc((size_t)par->count, sizeof *f->life);
-	f->later = calloc((size_t)par->count, sizeof *f->later);
-	if (par->rule == RATE_FILTER)
-		f->chances = bank_chances_new(
-			(int)par->count, par->seed + par->first * 0x9e3779b97f4a7c15u);
-	if (!f->life || !f->later || (par->rule == RATE_FILTER && !f->chances)) {
+	f->life = calloc((size_t)f->draws->count, sizeof *f->life);
+	f->later = calloc((size_t)f->draws->count, sizeof *f->later);
+	if (f->draws->rule == RATE_FILTER)
+		f->chances = bank_chances_new((int)f->draws->count,
+			f->draws->seed + f->draws->first * 0x9e3779b97f4a7c15u);
+	if (!f->life || !f->later || (f->draws->rule == RATE_FILTER && !f->chances)) {
 		forecast_free(f);
 		return NULL;
 	}
@@ -93,30 +94,25 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	*passage = NULL;
 	if (f->bank && !run_in && later)
 		bank_add(f->bank, t, y);
-	if (f->par.rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
+	if (f->draws->rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
 		return NUM_OK;
 	*passage = f->later;
 	if (f->bank)
 		return bank_draw(f->bank, f->chances, t, f->threshold, f->later);
-	for (long i = 0; i < f->par.count; i++)
+	for (long i = 0; i < f->draws->count; i++)
 		f->later[i] = INFINITY;
 	return NUM_OK;
 }
 
-void forecast_load(struct forecast *f, const double load[BANK_LOADS])
-{
-	memcpy(f->load, load, sizeof f->load);
-}
-
 /* Passes the covariates on, also of a row without an observation. */
-static void load_bank(struct forecast *f, double t)
+static void load_bank(struct forecast *f, double t, const double *load)
 {
 	if (f->bank && f->par.n_loads > 0)
-		bank_load(f->bank, t, f->load);
+		bank_load(f->bank, t, load);
 }
 
-enum num_status forecast_add(
-	struct forecast *f, double t, double value, double gap, double error)
+enum num_status forecast_add(struct forecast *f, double t, double value, double gap,
+	double error, const double *load)
 {
 	const struct forecast_par *par = &f->par;
 	struct pair *pair = &f->par.pair;
@@ -128,16 +124,16 @@ enum num_status forecast_add(
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > f->observed.last.t;
 	if (isnan(gap)) {
-		load_bank(f, t);
+		load_bank(f, t, load);
 		return NUM_OK;
 	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	/* the sum of the particles so far never falls */
-	if ((par->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
+	if ((f->draws->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
 		isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
-	load_bank(f, t);
+	load_bank(f, t, load);
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
@@ -174,7 +170,7 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 	for (long i = 0; i < f->n; i++)
 		f->later[i] = later_life(f->later[i], gone);
 	if (isnan(row.limit))
-		row.limit = par->rule == RATE_FILTER && !par->scaled
+		row.limit = f->draws->rule == RATE_FILTER && !par->scaled
 				    ? 10 * (t - f->observed.first.t + par->skip)
 				    : INFINITY;
 	return row;

@@ -135,6 +135,11 @@ void paths_free(struct paths *e)
 	free(e);
 }
 
+const struct paths_par *paths_par(const struct paths *e)
+{
+	return &e->par;
+}
+
 const struct path *paths_get(const struct paths *e, long i)
 {
 	return e->path ? &e->path[i] : NULL;

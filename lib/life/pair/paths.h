@@ -56,6 +56,7 @@ struct paths;
 struct paths *paths_new(const struct paths_par *par, struct partition *partition);
 void paths_free(struct paths *e);
 
+const struct paths_par *paths_par(const struct paths *e);
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
 /* Rate of the gap over the paths, per s: median, and half of the width of the middle

@@ -389,7 +389,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
+	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, 0 };
 	if (!a->scaled && !isnan(y) && y != 0) { /* zeros are the same in any scale */
 		a->scale = grey_scale(y);
 		a->scaled = 1;
@@ -402,7 +402,6 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 		return;
 	a->time = t;
 	a->rows++;
-	row->noise = observation_noise(a) * a->scale;
 	row->grey *= a->scale;
 	row->prediction *= a->scale;
 	row->state *= a->scale;
