@@ -23,7 +23,6 @@ struct state {
 	unsigned char *at; /* NULL: only count */
 	int load;          /* 1: from there into the object */
 	size_t size;       /* so far */
-	int failed;        /* 1: no memory to load into */
 };
 
 /* part may be NULL if the size is 0. */

@@ -128,7 +128,7 @@ struct outlook {
 		struct plateau course;
 		double factor, range, rescaled; /* of the values, or of the counter, from
 						 * about this time on; 0: none */
-		double first, last, clock;      /* times */
+		double first, clock;            /* times of the first and the last row */
 		double heeded;                  /* events up to this time are done */
 		double early;                   /* the last of those without an effect */
 		long rows;
@@ -367,6 +367,12 @@ void outlook_pass(struct outlook *o, struct state *s)
 	predict_pass(o->predict, s);
 }
 
+/* The bank of a unit; NULL: none yet. */
+static struct bank *bank_of(const struct outlook *o)
+{
+	return o->predict ? predict_bank(o->predict) : NULL;
+}
+
 static int concerns(const struct event *e, const char *unit)
 {
 	return !e->unit || strcmp(e->unit, unit) == 0;
@@ -378,9 +384,9 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 	for (int i = 0; i < n_events; i++) {
 		const struct event *e = &events[i];
 
-		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, in->unit))
+		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, o->unit))
 			continue;
-		if (!bank_event(predict_bank(o->predict), e->what))
+		if (!bank_event(bank_of(o), e->what))
 			o->now.early = fmax(o->now.early, e->t);
 		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
 		o->now.course = (struct plateau){ 0 };
@@ -470,7 +476,7 @@ static void put_failure(struct outlook *o, double *cell)
 
 static void put_factors(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
+	const struct bank *b = bank_of(o);
 
 	for (int k = 0; k < covariates_count(); k++)
 		cell[k] = b && bank_ready(b) ? bank_factor(b, k) : NAN;
@@ -478,7 +484,7 @@ static void put_factors(const struct outlook *o, double *cell)
 
 static void put_weights(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
+	const struct bank *b = bank_of(o);
 
 	for (int k = 0; k < WEIGHED; k++)
 		cell[k] = b && bank_ready(b) ? bank_weight(b, weighed[k].family) : NAN;
@@ -518,7 +524,6 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	if (now->started)
 		learn(o, in, filtered);
 	now->rows++;
-	now->last = in->t;
 	if (!isnan(in->y))
 		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
 				      ? now->beyond + 1
@@ -549,9 +554,10 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 
 /* Says so if the first values may have told the wrong direction, because one or two were
  * bad or the threshold had been passed before, and if the trends recede. */
-static int check_direction(const struct outlook *o, const char *unit)
+static int check_direction(const struct outlook *o)
 {
-	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
+	const struct bank *b = bank_of(o);
+	const char *unit = o->unit;
 
 	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
 		warn("%s%sthe values recede from the threshold, and no life ends: "
@@ -570,17 +576,17 @@ static int check_direction(const struct outlook *o, const char *unit)
 	return 1;
 }
 
-int outlook_settle(const struct outlook *o, const char *unit)
+int outlook_settle(const struct outlook *o)
 {
+	const char *unit = o->unit;
 	unsigned long due = 0;
 	int doubtful = !is_rescaled(o) &&
 		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
-	    stuck = o->predict && predict_bank(o->predict) &&
-		    bank_stuck(predict_bank(o->predict)),
+	    stuck = bank_of(o) && bank_stuck(bank_of(o)),
 	    stopped =
 		    !stuck && plateau_reached(&o->now.course, outlook_options.threshold),
 	    alternates = rescaled_alternates(&o->now.scale),
-	    doubt = check_direction(o, unit) || is_rescaled(o) || doubtful || stuck ||
+	    doubt = check_direction(o) || is_rescaled(o) || doubtful || stuck ||
 		    stopped || alternates;
 
 	if (doubtful)
@@ -669,8 +675,8 @@ void outlook_count(struct outlook *o)
 	stats_add("rows_skipped", (double)o->now.skipped);
 	stats_add("rows_standing", (double)o->now.standing);
 	stats_add("events", (double)o->now.events);
-	if (o->predict && predict_bank(o->predict)) {
-		struct bank_counts c = bank_counts(predict_bank(o->predict));
+	if (bank_of(o)) {
+		struct bank_counts c = bank_counts(bank_of(o));
 
 		stats_add("outliers_of_wear", (double)c.outliers);
 		stats_add("shifts", (double)c.shifts);

@@ -60,10 +60,10 @@ void outlook_pass(struct outlook *o, struct state *s);
 void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell);
 int outlook_cells(void);
-/* After the last row: tells which events the unit with this name has used.  Warns and
+/* After the last row: tells which events the unit has used.  Warns and
  * returns 1 if there are events before the saved state that it did not know, or if its
  * values have changed their scale. */
-int outlook_settle(const struct outlook *o, const char *unit);
+int outlook_settle(const struct outlook *o);
 /* After all units: warns and returns 1 if an event had no effect on any of them. */
 int outlook_report_events(void);
 int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none */

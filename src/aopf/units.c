@@ -47,11 +47,11 @@ struct head {
 struct place {
 	uint64_t sequence, check;
 	char name[NAME];
-	int64_t number, rows;
+	int64_t rows;
 	double last, value, clock;
 };
 
-static const char magic[16] = "aopf state 9\n";
+static const char magic[16] = "aopf state 10\n";
 
 struct units *units_new(int bare)
 {
@@ -125,7 +125,7 @@ int units_report(const struct units *units)
 
 		resumed += u->resumed;
 		if (u->outlook)
-			doubtful |= outlook_settle(u->outlook, u->name);
+			doubtful |= outlook_settle(u->outlook);
 	}
 	for (int i = 0; i < units->n_input && resumed > 0; i++)
 		if (units->unit[units->of_input[i]]->resumed)
@@ -303,8 +303,6 @@ static int resume_unit(struct units *units, FILE *f, int number)
 	u->clock = place[newer].clock;
 	s.at = units->place + sizeof place[0];
 	pass(u, &s);
-	if (s.failed)
-		die(EXIT_RUN, "no memory for unit %s", u->name);
 	return 1;
 }
 
@@ -371,7 +369,6 @@ void units_keep(struct units *units, const char *path, const char *options)
 void unit_save(struct units *units, struct machine *u)
 {
 	struct place p = { .sequence = ++u->sequence,
-		.number = u->number,
 		.rows = u->rows,
 		.last = u->last,
 		.value = u->value,

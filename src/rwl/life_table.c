@@ -2,7 +2,6 @@
 #include "cli/msg.h"
 #include "common/quantile_columns.h"
 #include "io/tables.h"
-#include "life/pair/remaining.h"
 #include "life/score/metrics.h"
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +9,8 @@
 struct lifetable {
 	struct lifetable_par par;
 	struct table_out *out;
-	struct metrics *metrics; /* NULL without scores */
-	double median;           /* of the row written last */
+	struct metrics metrics; /* with par.eol */
+	double median;          /* of the row written last */
 };
 
 static char *column_names(const struct lifetable_par *par)
@@ -42,29 +41,16 @@ static char *column_units(const struct lifetable_par *par)
 	return all;
 }
 
-static struct metrics *new_metrics(const struct lifetable_par *par)
-{
-	struct metrics_par metrics = { .eol = par->eol,
-		.alpha = par->cone,
-		.beta = 0.5,
-		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
-	struct metrics *m;
-
-	if (isnan(par->eol))
-		return NULL;
-	m = metrics_new(&metrics);
-	if (!m)
-		die(EXIT_RUN, "out of memory");
-	return m;
-}
-
 struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *par)
 {
 	struct lifetable *t = xcalloc(1, sizeof *t);
 	char *names = column_names(par), *units = column_units(par);
 
 	t->par = *par;
-	t->metrics = new_metrics(par);
+	t->metrics.par = (struct metrics_par){ .eol = par->eol,
+		.alpha = par->cone,
+		.beta = 0.5,
+		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
 	t->median = NAN;
 	t->out = table_create(NULL, cmd, units, names);
 	free(names);
@@ -97,8 +83,7 @@ static double quantile(const struct forecast_row *row, double level)
 	return row->n ? metric_quantile(row->life, (size_t)row->n, level) : NAN;
 }
 
-static void put_scores(
-	const struct lifetable *t, double time, const struct forecast_row *row)
+static void put_scores(struct lifetable *t, double time, const struct forecast_row *row)
 {
 	const struct opt_list *levels = t->par.levels;
 	struct metrics_row r = { .truth = t->par.eol - time,
@@ -106,7 +91,7 @@ static void put_scores(
 		.accuracy = NAN,
 		.mass = NAN,
 		.crps = NAN };
-	int counted = row->n > 0 && metrics_add(t->metrics, time, quantile(row, 0.5),
+	int counted = row->n > 0 && metrics_add(&t->metrics, time, quantile(row, 0.5),
 					    quantile(row, levels->v[0]),
 					    quantile(row, levels->v[levels->n - 1]),
 					    row->life, (size_t)row->n, &r) == NUM_OK;
@@ -122,19 +107,20 @@ static void put_scores(
 
 static void put_summary(struct lifetable *t, double time, const struct forecast_row *row)
 {
-	struct remaining_summary sum = { NAN, NAN };
+	size_t n = (size_t)row->n, failed;
+	double mean;
 
-	if (row->n > 0)
-		sum = remaining_sum_up(row->life, (size_t)row->n, row->limit);
+	metric_cut(row->life, n, row->limit);
+	mean = metric_mean(row->life, n, &failed);
 	t->median = quantile(row, 0.5);
 	table_put(t->out, time);
-	table_put(t->out, sum.mean);
+	table_put(t->out, mean);
 	for (int i = 0; i < t->par.levels->n; i++)
 		table_put(t->out, quantile(row, t->par.levels->v[i]));
-	table_put(t->out, sum.p_no_failure);
+	table_put(t->out, n > 0 ? (double)(n - failed) / (double)n : NAN);
 	if (t->par.grey)
 		table_put(t->out, row->grey);
-	if (t->metrics)
+	if (!isnan(t->par.eol))
 		put_scores(t, time, row);
 	table_end_row(t->out);
 }
@@ -171,9 +157,8 @@ static void write_scores(struct table_out *out, const struct metrics *m)
 
 void lifetable_close(struct lifetable *t)
 {
-	if (t->metrics)
-		write_scores(t->out, t->metrics);
+	if (!isnan(t->par.eol))
+		write_scores(t->out, &t->metrics);
 	table_done(t->out);
-	metrics_free(t->metrics);
 	free(t);
 }

@@ -4,7 +4,6 @@
 #include "cli/stats.h"
 #include "common/covariates.h"
 #include "fragments.h"
-#include "life/pair/remaining.h"
 #include "life/trend/passage.h"
 #include "life_table.h"
 #include "observations.h"
@@ -186,10 +185,6 @@ static struct forecast *new_forecast(
 	struct forecast_par par = { .pair = pump.pair,
 		.quantity = quantity,
 		.from_new = new || quantity >= PAIR_VOLUME,
-		.rule = (enum rate_rule)rule,
-		.count = count,
-		.seed = (uint64_t)seed,
-		.first = (uint32_t)first_path,
 		.scaled = wear_files.n && !doubtful &&
 			  (calibrations.n || !isnan(step_time)),
 		.skip = skip,
@@ -225,8 +220,7 @@ static void follow(struct observations *s, struct lifetable *out, struct forecas
 		double load[BANK_LOADS] = { 0 };
 
 		covariates_read(s->table, load);
-		forecast_load(f, load);
-		if (forecast_add(f, s->t, s->value, s->gap, s->gap_error) != NUM_OK)
+		if (forecast_add(f, s->t, s->value, s->gap, s->gap_error, load) != NUM_OK)
 			die(EXIT_RUN, "out of memory");
 		row = forecast_at(f, s->t);
 		if (!isnan(s->gap)) {

@@ -1,6 +1,6 @@
 /* A unit whose gap opens evenly: lives in closed form; pair and slope. */
 #include "life/pair/forecast.h"
-#include "life/pair/remaining.h"
+#include "life/score/metrics.h"
 #include "num/rng.h"
 #include "num/running.h"
 #include "tap.h"
@@ -54,7 +54,7 @@ static void test_forecast(void)
 		.seed = 1, .count = 8, .step_time = NAN, .area = 2e-3, .critical = NAN
 	};
 	struct forecast_par par = {
-		.pair = make_pair(), .quantity = PAIR_GAP, .count = 8, .horizon = NAN
+		.pair = make_pair(), .quantity = PAIR_GAP, .horizon = NAN
 	};
 	struct paths *e = paths_new(&paths, NULL);
 	struct forecast_row row;
@@ -63,15 +63,18 @@ static void test_forecast(void)
 	par.pair.threshold_gap = 15e-6;
 	f = forecast_new(e, &par);
 	ok(f != NULL, "a forecast is made");
-	ok(forecast_add(f, 0, 10e-6, 10e-6, 0) == NUM_OK && forecast_at(f, 0).n == 0,
+	ok(forecast_add(f, 0, 10e-6, 10e-6, 0, NULL) == NUM_OK &&
+			forecast_at(f, 0).n == 0,
 		"one row gives no rate");
-	ok(forecast_add(f, 100, 11e-6, 11e-6, 0) == NUM_OK && forecast_at(f, 100).n == 1,
+	ok(forecast_add(f, 100, 11e-6, 11e-6, 0, NULL) == NUM_OK &&
+			forecast_at(f, 100).n == 1,
 		"two rows give the same rate for all paths");
 	row = forecast_at(f, 100);
 	near(row.life[0], 400, 1e-9, "4 um at 1 um per 100 s last 400 s");
 	ok(isinf(row.limit) && isnan(row.grey),
 		"without a horizon the grey model is unlimited");
-	ok(forecast_add(f, 150, NAN, NAN, 0) == NUM_OK && forecast_at(f, 150).n == 1,
+	ok(forecast_add(f, 150, NAN, NAN, 0, NULL) == NUM_OK &&
+			forecast_at(f, 150).n == 1,
 		"a missing value does not change the rate");
 	near(forecast_at(f, 150).life[0], 350, 1e-9, "the elapsed time is subtracted");
 	near(forecast_at(f, 600).life[0], 0, 0, "the life is never below 0");
@@ -79,9 +82,9 @@ static void test_forecast(void)
 
 	par.skip = 50;
 	f = forecast_new(e, &par);
-	forecast_add(f, 0, 5e-6, 5e-6, 0);
-	forecast_add(f, 100, 10e-6, 10e-6, 0);
-	forecast_add(f, 200, 11e-6, 11e-6, 0);
+	forecast_add(f, 0, 5e-6, 5e-6, 0, NULL);
+	forecast_add(f, 100, 10e-6, 10e-6, 0, NULL);
+	forecast_add(f, 200, 11e-6, 11e-6, 0, NULL);
 	near(forecast_at(f, 200).life[0], 400, 1e-9,
 		"run-in does not count for the rate");
 	forecast_free(f);
@@ -89,7 +92,8 @@ static void test_forecast(void)
 	par.skip = 0;
 	par.from_new = 1;
 	f = forecast_new(e, &par);
-	ok(forecast_add(f, 100, 12e-6, 12e-6, 0) == NUM_OK && forecast_at(f, 100).n == 1,
+	ok(forecast_add(f, 100, 12e-6, 12e-6, 0, NULL) == NUM_OK &&
+			forecast_at(f, 100).n == 1,
 		"a new pair at time 0 is a row");
 	near(forecast_at(f, 100).life[0], 150, 1e-9, "the new pair gives a rate");
 	forecast_free(f);
@@ -128,9 +132,6 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 		.area = 2e-3,
 		.critical = NAN };
 	struct forecast_par par = { .quantity = by_gap ? PAIR_GAP : PAIR_LEAKAGE,
-		.rule = RATE_FILTER,
-		.count = COUNT,
-		.seed = 1,
 		.horizon = NAN };
 	struct paths *e = paths_new(&paths, NULL);
 	gsl_rng *rng = rng_new(11, number, RNG_LIFE);
@@ -155,10 +156,10 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 		double value = by_gap ? gap[k] : leakage_flow(&pair.leakage, gap[k]);
 
 		value += 0.02 * span * gsl_ran_ugaussian(rng);
-		forecast_add(f, k, value, pair_gap(&pair, par.quantity, value), 0);
+		forecast_add(f, k, value, pair_gap(&pair, par.quantity, value), 0, NULL);
 	}
 	row = forecast_at(f, now);
-	remaining_sum_up(row.life, (size_t)row.n, INFINITY);
+	metric_cut(row.life, (size_t)row.n, INFINITY);
 	left = end - now;
 	low = row.life[(int)(0.05 * COUNT)];
 	high = row.life[(int)(0.95 * COUNT)];

@@ -50,12 +50,15 @@ static void test_grey_series(void)
 	for (int k = 999; k >= 0; k--)
 		grey_add(&back, x[k], k < 999 ? t[k + 1] - t[k] : 0);
 	g = grey_of(&s);
-	near(grey_rate(&g), grey_rate(&back), 1e-14,
+	near(grey_rate(&g) / s.unit, grey_rate(&back), 1e-14,
 		"a series grown forward has the rate");
-	near(grey_forecast(&g, 1, 1), grey_forecast(&back, 1, 1), 1e-11, "and forecast");
-	near(grey_rate_error(&g), grey_rate_error(&back), 1e-15, "and standard errors");
-	near(grey_level_error(&g), grey_level_error(&back), 1e-12, "of rate and level");
-	ok(g.n == 1000 && fabs(g.span - (t[999] - t[0])) < 1e-8, "and length");
+	near(s.scale * grey_forecast(&g, 1 / s.unit, 1 / s.unit),
+		grey_forecast(&back, 1, 1), 1e-11, "and forecast");
+	near(grey_rate_error(&g) / s.unit, grey_rate_error(&back), 1e-15,
+		"and standard errors");
+	near(s.scale * grey_level_error(&g), grey_level_error(&back), 1e-12,
+		"of rate and level");
+	ok(g.n == 1000 && fabs(s.unit * g.span - (t[999] - t[0])) < 1e-8, "and length");
 }
 
 /* An alternating series is best forecast by many points; fixed orders stay; window

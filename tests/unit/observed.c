@@ -7,34 +7,36 @@ enum { N = 20000 };
 
 static void check_rates(void)
 {
-	struct observed by_mean = { .rule = RATE_MEAN }, *mean = &by_mean;
-	struct observed by_last = { .rule = RATE_LAST }, *last = &by_last;
+	struct observed by_mean = { 0 }, *mean = &by_mean;
+	struct observed by_last = { 0 }, *last = &by_last;
 	double t[] = { 10, 11, 13, 13, 17 }, h[] = { 1, 2, 3, 4, 6 };
 
-	ok(isnan(observed_rate(mean)), "no observation gives no rate");
+	ok(isnan(observed_rate(mean, RATE_MEAN)), "no observation gives no rate");
 	for (int i = 0; i < 5; i++) {
 		observed_add(mean, t[i], h[i], h[i]);
 		observed_add(last, t[i], h[i], h[i]);
 		if (i == 0)
-			ok(isnan(observed_rate(mean)), "one observation gives no rate");
+			ok(isnan(observed_rate(mean, RATE_MEAN)),
+				"one observation gives no rate");
 		if (i == 3)
-			near(observed_rate(last), 1, 0,
+			near(observed_rate(last, RATE_LAST), 1, 0,
 				"observations at the same time take the rate from the time before");
 	}
-	near(observed_rate(mean), 5 / 7., 1e-15,
+	near(observed_rate(mean, RATE_MEAN), 5 / 7., 1e-15,
 		"the mean rate is the whole wear over its time");
-	near(observed_rate(last), 0.5, 0, "the last rate is the last wear over its time");
+	near(observed_rate(last, RATE_LAST), 0.5, 0,
+		"the last rate is the last wear over its time");
 	ok(last->n == 5 && observed_gap(last) == 6 && last->last.t == 17,
 		"the latest observation is returned");
 	observed_begin(mean, 20, 7);
 	observed_add(mean, 22, 8, 8);
-	near(observed_rate(mean), 0.5, 0, "the rates can be restarted");
+	near(observed_rate(mean, RATE_MEAN), 0.5, 0, "the rates can be restarted");
 }
 
 /* Of a gap in so many rows. */
 static double trend_of(int rows, double (*gap)(double part))
 {
-	struct observed by_mean = { .rule = RATE_MEAN };
+	struct observed by_mean = { 0 };
 
 	for (int i = 0; i < rows; i++)
 		observed_add(&by_mean, 10 * i, 1, gap((double)i / rows));
@@ -54,7 +56,7 @@ static double square(double part)
 /* The same gaps, each after one at its time that it replaces. */
 static double trend_of_replaced(void)
 {
-	struct observed by_mean = { .rule = RATE_MEAN };
+	struct observed by_mean = { 0 };
 
 	for (int i = 0; i < 9; i++) {
 		observed_add(&by_mean, 10 * i, 1, -square(i / 9.));
@@ -89,7 +91,7 @@ static double noisy(double part)
 
 static int falls(int rows, double (*gap)(double part), double halt)
 {
-	struct observed o = { .rule = RATE_MEAN };
+	struct observed o = { 0 };
 
 	for (int i = 0; i < rows; i++)
 		observed_add(&o, i + (2 * i > rows ? halt : 0), 1, gap((double)i / rows));
@@ -111,7 +113,7 @@ static void check_falls(void)
 static void check_grey(const char *what, double level, double unit)
 {
 	static double t[N], x[N];
-	struct observed by_mean = { .rule = RATE_MEAN }, *o = &by_mean;
+	struct observed by_mean = { 0 }, *o = &by_mean;
 	double worst = 0;
 
 	for (int i = 0; i < N; i++) {
@@ -130,9 +132,11 @@ static void check_grey(const char *what, double level, double unit)
 			want = now >= 3   ? 0
 			       : rate > 0 ? log(3 / now) / rate * spacing
 					  : INFINITY;
-			if (want != observed_grey(o, 3 * level))
+			if (want != grey_life(&o->grey, 3 * level, 1, 0, 0))
 				worst = tap_max(worst,
-					fabs(observed_grey(o, 3 * level) / want - 1));
+					fabs(grey_life(&o->grey, 3 * level, 1, 0, 0) /
+							want -
+						1));
 		}
 	}
 	ok(worst < 1e-9, "%s: forward and backward sums agree to %.1e", what, worst);
@@ -140,7 +144,7 @@ static void check_grey(const char *what, double level, double unit)
 
 int main(void)
 {
-	struct observed by_mean = { .rule = RATE_MEAN }, *o = &by_mean;
+	struct observed by_mean = { 0 }, *o = &by_mean;
 
 	check_rates();
 	check_trend();
@@ -149,10 +153,11 @@ int main(void)
 	check_grey("values of 1e-200, 1e-9", 1e-200, 1e-9);
 	check_grey("values of 1e200, 1e9", 1e200, 1e9);
 	for (int i = 0; i < 10; i++) {
-		ok(i >= 4 || isnan(observed_grey(o, 3)), "a model needs four values");
+		ok(i >= 4 || isnan(grey_life(&o->grey, 3, 1, 0, 0)),
+			"a model needs four values");
 		observed_add(o, i, 2, 2);
 	}
-	ok(isinf(observed_grey(o, 3)) && observed_grey(o, 2) == 0,
+	ok(isinf(grey_life(&o->grey, 3, 1, 0, 0)) && grey_life(&o->grey, 2, 1, 0, 0) == 0,
 		"a constant is continued as a constant");
 	return tap_done();
 }

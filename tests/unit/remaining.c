@@ -1,5 +1,5 @@
 /* remaining - first passages, thresholds and the rate followed through noise */
-#include "life/pair/remaining.h"
+#include "life/pair/paths.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>
@@ -42,8 +42,6 @@ static void check_gamma(double left, double mean, double variance)
 static void check_passages(void)
 {
 	gsl_rng *rng = rng_new(1, 0, RNG_LIFE);
-	double a[4] = { 3, INFINITY, 1, 50 };
-	struct remaining_summary s;
 
 	near(remaining_constant(6, 2), 3, 0, "the time at a constant rate is right");
 	ok(isinf(remaining_constant(6, 0)) && isinf(remaining_constant(6, -1)),
@@ -63,17 +61,6 @@ static void check_passages(void)
 		"a passage is 0 where the threshold is reached and infinite where there is no wear");
 	ok(remaining_gamma(1, 1e-200, 1e200, rng) >= 0,
 		"a shape that underflows does not loop");
-	near(remaining_large(3, 10, 12), 18, 0,
-		"large particles fail the unit at the end of step 3");
-	ok(remaining_large(3, 10, 31) == 0 && isinf(remaining_large(0, 10, 0)),
-		"a step that has passed leaves 0, and one that never comes infinity");
-	s = remaining_sum_up(a, 4, 40);
-	ok(s.mean == 2 && s.p_no_failure == 0.5 && a[0] == 1 && isinf(a[2]) &&
-			isinf(a[3]),
-		"samples beyond the horizon are no failure");
-	a[0] = a[1] = 1.5e308;
-	ok(remaining_sum_up(a, 2, INFINITY).mean == 1.5e308,
-		"the mean of large samples does not overflow");
 	gsl_rng_free(rng);
 }
 

@@ -16,12 +16,27 @@ void grey_add(struct grey *g, double x, double gap)
 	g->n++;
 }
 
+double grey_scale(double x)
+{
+	int exponent;
+
+	frexp(x, &exponent);
+	return ldexp(1, exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent);
+}
+
+/* Zeros are the same in any scale, so the scale may be set after them. */
 void grey_append(struct grey_series *s, double x, double gap)
 {
+	if (s->scale == 0 && x != 0)
+		s->scale = grey_scale(x);
+	x /= s->scale > 0 ? s->scale : 1;
 	if (s->n++ == 0) {
 		s->oldest = x;
 		return;
 	}
+	if (s->n == 2)
+		s->unit = grey_scale(gap);
+	gap /= s->unit;
 	regression_add(&s->fit, s->integral + x * gap / 2, x);
 	s->integral += x * gap;
 	s->span += gap;
@@ -69,13 +84,6 @@ double grey_level_error(const struct grey *g)
 	return g->n > 1 ? sqrt(grey_residual(g) / (g->n - 1)) : 0;
 }
 
-double grey_passage(double now, double rate, double limit)
-{
-	double time = -log(limit / now) / rate;
-
-	return time >= 0 ? time : INFINITY;
-}
-
 double grey_forecast(const struct grey *g, double h, double gap)
 {
 	double rate = grey_rate(g),
@@ -85,4 +93,24 @@ double grey_forecast(const struct grey *g, double h, double gap)
 	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
 
 	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;
+}
+
+double grey_life(const struct grey_series *s, double limit, int direction, double rate_z,
+	double level_z)
+{
+	struct grey g = grey_of(s);
+	double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z,
+	       level = g.fit.mean_y + grey_level_error(&g) * level_z +
+		       rate * (g.tail - g.fit.mean_x),
+	       now, time;
+
+	if (g.n < GREY_ORDER_MIN)
+		return NAN;
+	limit /= s->scale > 0 ? s->scale : 1;
+	now = grey_curve(
+		lanes_all(level), lanes_all(rate), g.span, g.span / (g.n - 1))[0];
+	if (direction * (now - limit) >= 0)
+		return 0;
+	time = -log(limit / now) / rate;
+	return time >= 0 ? time * s->unit : INFINITY;
 }

@@ -38,15 +38,26 @@ struct grey {
 void grey_add(struct grey *g, double x, double gap);
 
 /* The same model of a whole series, oldest point first: keeps forward sums, so that a
- * point costs the same at any length.  gap: since the point before, in steps; that of the
- * first point is not used.  Zero it to start. */
+ * point costs the same at any length.  Zero it to start. */
 struct grey_series {
 	long n;
+	double scale, unit; /* powers of two, in which the sums are: near the first value
+			     * but 0, and near the first gap */
 	double oldest, span, integral; /* the first point, and sums since then */
 	struct regression fit;         /* of x on the integral up to mid-interval */
 };
+/* The power of two next to |x|, at which its square neither overflows nor underflows. */
+double grey_scale(double x);
+/* gap: since the point before; that of the first point is not used. */
 void grey_append(struct grey_series *s, double x, double gap);
+/* In its scale and unit. */
 struct grey grey_of(const struct grey_series *s);
+/* Time from the last point until the curve of the fit, with rate and level so many
+ * standard errors away, reaches a limit in this direction (+1 from below): 0 if it is
+ * beyond it; INFINITY: never, also where it would have to change its sign; NAN below four
+ * points. */
+double grey_life(const struct grey_series *s, double limit, int direction, double rate_z,
+	double level_z);
 
 /* Development coefficient a, 1/step (negative: growing), and the level c = b - a x1 at
  * the time of the oldest point, so that x(t) = c exp(-a t).  a = 0 below three points,
@@ -65,9 +76,6 @@ double grey_level_error(const struct grey *g);
  * steps (h = gap = 1: the next point of an evenly spaced series).  Finite for finite
  * input. */
 double grey_forecast(const struct grey *g, double h, double gap);
-/* The time in which the curve of the fit, now at a value, reaches a limit on the side to
- * which it goes; INFINITY: never, also where it would have to change its sign. */
-double grey_passage(double now, double rate, double limit);
 
 /* Largest a of a fit over n intervals of this length in all: in x_k (1 + a / 2) = b - a
  * x1_{k-1}, the model per interval, the factor is above 0 for a > -2, and backward in

@@ -8,14 +8,14 @@ enum { PERIOD = 8 }; /* rows between two updates of a full window */
 
 /* Where most residuals are 0, as with rounded values, so is their median; the root mean
  * square is used instead. */
-static double spread(struct noise *n, int count)
+static double spread(const struct noise *n, int count)
 {
-	double median, sum = 0;
+	double sorted[NOISE_WINDOW], median, sum = 0;
 	size_t middle[2] = { (size_t)(count - 1) / 2, (size_t)count / 2 };
 
-	memcpy(n->sorted, n->residual, (size_t)count * sizeof *n->sorted);
-	select_ranks(n->sorted, (size_t)count, middle, 2);
-	median = 0.5 * (n->sorted[middle[0]] + n->sorted[middle[1]]);
+	memcpy(sorted, n->residual, (size_t)count * sizeof *sorted);
+	select_ranks(sorted, (size_t)count, middle, 2);
+	median = 0.5 * (sorted[middle[0]] + sorted[middle[1]]);
 	for (int i = 0; i < count; i++)
 		sum += n->residual[i] * n->residual[i];
 	return median > 0 ? 1.4826 * median : sqrt(sum / count);

@@ -7,13 +7,16 @@
 #ifndef LIFE_NOISE_H
 #define LIFE_NOISE_H
 
-enum { NOISE_WINDOW = 256 }; /* residuals kept */
+/* Residuals kept.  With the last 40, the errors of filtered states are 1 % larger (200
+ * series of ten simulated kinds); with the noise of a bank of straight lines in place of
+ * second differences 1.3 %, and those of predictions 0.5 %. */
+enum { NOISE_WINDOW = 256 };
 
 /* All 0 at first. */
 struct noise {
 	double y[2], gap; /* the two last observations and the gap between them */
 	long rows;
-	double residual[NOISE_WINDOW], sorted[NOISE_WINDOW];
+	double residual[NOISE_WINDOW];
 	double scale; /* standard deviation; 0 below three rows or for an exact line */
 };
 

@@ -1,5 +1,4 @@
 #include "life/pair/forecast.h"
-#include "life/pair/remaining.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
 #include <math.h>
@@ -9,13 +8,14 @@
 struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
+	const struct paths_par *draws; /* of paths */
 	struct observed observed;
 	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, to tell repairs */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
-	double load[BANK_LOADS];
-	double *life, *later; /* remaining times at the latest observation, and now */
+	double threshold;        /* of the bank */
+	double *life, *later;    /* remaining times at the latest observation, and now */
 	long rows, n;
 	double first_t, grey;
 };
@@ -38,7 +38,8 @@ static enum num_status open_bank(struct forecast *f)
 	if (par->scaled)
 		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
-	bank.threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
+	f->threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
+	bank.threshold = f->threshold;
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {
 		f->other = (struct bank_shape){ .family = BANK_OTHER,
 			.par = f->by_gap ? -2 : 2. / 3,
@@ -59,14 +60,14 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 		return NULL;
 	f->par = *par;
 	f->paths = paths;
+	f->draws = paths_par(paths);
 	f->grey = NAN;
-	f->observed.rule = par->rule;
-	f->life = calloc((size_t)par->count, sizeof *f->life);
-	f->later = calloc((size_t)par->count, sizeof *f->later);
-	if (par->rule == RATE_FILTER)
-		f->chances = bank_chances_new(
-			(int)par->count, par->seed + par->first * 0x9e3779b97f4a7c15u);
-	if (!f->life || !f->later || (par->rule == RATE_FILTER && !f->chances)) {
+	f->life = calloc((size_t)f->draws->count, sizeof *f->life);
+	f->later = calloc((size_t)f->draws->count, sizeof *f->later);
+	if (f->draws->rule == RATE_FILTER)
+		f->chances = bank_chances_new((int)f->draws->count,
+			f->draws->seed + f->draws->first * 0x9e3779b97f4a7c15u);
+	if (!f->life || !f->later || (f->draws->rule == RATE_FILTER && !f->chances)) {
 		forecast_free(f);
 		return NULL;
 	}
@@ -90,40 +91,28 @@ void forecast_free(struct forecast *f)
 static enum num_status passages(struct forecast *f, double t, double y, int run_in,
 	int later, const double **passage)
 {
-	double limit = pair_limit(&f->par.pair), threshold;
-
 	*passage = NULL;
 	if (f->bank && !run_in && later)
 		bank_add(f->bank, t, y);
-	if (f->par.rule != RATE_FILTER)
-		return NUM_OK;
-	if (!f->bank) {
-		for (long i = 0; i < f->par.count; i++)
-			f->later[i] = INFINITY;
-		*passage = f->later;
-		return NUM_OK;
-	}
-	threshold = f->by_gap ? limit : pair_value(&f->par.pair, f->par.quantity, limit);
-	if (!bank_ready(f->bank))
+	if (f->draws->rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
 		return NUM_OK;
 	*passage = f->later;
-	return bank_draw(f->bank, f->chances, t, threshold, f->later);
-}
-
-void forecast_load(struct forecast *f, const double load[BANK_LOADS])
-{
-	memcpy(f->load, load, sizeof f->load);
+	if (f->bank)
+		return bank_draw(f->bank, f->chances, t, f->threshold, f->later);
+	for (long i = 0; i < f->draws->count; i++)
+		f->later[i] = INFINITY;
+	return NUM_OK;
 }
 
 /* Passes the covariates on, also of a row without an observation. */
-static void load_bank(struct forecast *f, double t)
+static void load_bank(struct forecast *f, double t, const double *load)
 {
 	if (f->bank && f->par.n_loads > 0)
-		bank_load(f->bank, t, f->load);
+		bank_load(f->bank, t, load);
 }
 
-enum num_status forecast_add(
-	struct forecast *f, double t, double value, double gap, double error)
+enum num_status forecast_add(struct forecast *f, double t, double value, double gap,
+	double error, const double *load)
 {
 	const struct forecast_par *par = &f->par;
 	struct pair *pair = &f->par.pair;
@@ -135,16 +124,16 @@ enum num_status forecast_add(
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > f->observed.last.t;
 	if (isnan(gap)) {
-		load_bank(f, t);
+		load_bank(f, t, load);
 		return NUM_OK;
 	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	/* the sum of the particles so far never falls */
-	if ((par->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
+	if ((f->draws->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
 		isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
-	load_bank(f, t);
+	load_bank(f, t, load);
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
@@ -154,8 +143,8 @@ enum num_status forecast_add(
 	f->n = paths_predict(
 		f->paths, &f->observed, passage, pair_limit(pair), error, f->life);
 	if (f->par.grey)
-		f->grey = observed_grey(&f->observed,
-			pair_value(pair, f->par.quantity, pair_limit(pair)));
+		f->grey = grey_life(&f->observed.grey,
+			pair_value(pair, par->quantity, pair_limit(pair)), 1, 0, 0);
 	return NUM_OK;
 }
 
@@ -181,7 +170,7 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 	for (long i = 0; i < f->n; i++)
 		f->later[i] = later_life(f->later[i], gone);
 	if (isnan(row.limit))
-		row.limit = par->rule == RATE_FILTER && !par->scaled
+		row.limit = f->draws->rule == RATE_FILTER && !par->scaled
 				    ? 10 * (t - f->observed.first.t + par->skip)
 				    : INFINITY;
 	return row;

@@ -1,7 +1,7 @@
 /* forecast.h - remaining life of one unit at every observation
  *
  *	struct forecast *f = forecast_new(paths, &par);
- *	forecast_add(f, t, value, gap, 0);
+ *	forecast_add(f, t, value, gap, 0, NULL);
  *	row = forecast_at(f, t);
  *	forecast_free(f);
  *
@@ -22,11 +22,7 @@
 struct forecast_par {
 	struct pair pair; /* gap_new NAN: the first gap observed */
 	enum pair_quantity quantity;
-	int from_new;        /* 1: wear counts from the new pair at time 0 */
-	enum rate_rule rule; /* rule, count, seed and first: the same as of the paths */
-	long count;
-	uint64_t seed;
-	uint32_t first;
+	int from_new;   /* 1: wear counts from the new pair at time 0 */
 	int scaled;     /* 1: the paths know how long a step takes, and their rate */
 	double skip;    /* run-in from the first row on, which the rates leave out, s */
 	double horizon; /* lives beyond this count as no failure; NAN: none, or ten times
@@ -50,12 +46,11 @@ struct forecast;
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par);
 void forecast_free(struct forecast *f);
 
-/* The covariates of the next row. */
-void forecast_load(struct forecast *f, const double load[BANK_LOADS]);
-/* Adds a row: the value as read, and the gap derived from it with its standard error.
- * A gap of NAN is no observation: returns NUM_OK and leaves the prediction as it was. */
-enum num_status forecast_add(
-	struct forecast *f, double t, double value, double gap, double error);
+/* Adds a row: the value as read, the gap derived from it with its standard error, and the
+ * covariates [n_loads] since the row before.  A gap of NAN is no observation: returns
+ * NUM_OK and leaves the prediction as it was. */
+enum num_status forecast_add(struct forecast *f, double t, double value, double gap,
+	double error, const double *load);
 /* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 

@@ -38,15 +38,6 @@ static void keep(struct observed *o, struct moment m)
 	o->kept[o->n_kept++] = m;
 }
 
-static void add_sums(struct observed *o, double dt, double value)
-{
-	if (o->grey.n == 0)
-		o->scale = value != 0 ? fabs(value) : 1;
-	if (o->grey.n <= 1)
-		o->unit = dt > 0 ? dt : 1;
-	grey_append(&o->grey, value / o->scale, dt / o->unit);
-}
-
 void observed_add(struct observed *o, double t, double value, double gap)
 {
 	double dt;
@@ -62,7 +53,7 @@ void observed_add(struct observed *o, double t, double value, double gap)
 		o->before = o->last;
 	o->last = (struct moment){ t, gap };
 	if (o->grey.n == 0 || dt > 0)
-		add_sums(o, dt, value);
+		grey_append(&o->grey, value, dt);
 	o->n++;
 }
 
@@ -71,9 +62,9 @@ double observed_gap(const struct observed *o)
 	return o->begun ? o->last.gap : NAN;
 }
 
-double observed_rate(const struct observed *o)
+double observed_rate(const struct observed *o, enum rate_rule rule)
 {
-	const struct moment *from = o->rule == RATE_LAST ? &o->before : &o->first;
+	const struct moment *from = rule == RATE_LAST ? &o->before : &o->first;
 
 	if (!(o->last.t > from->t))
 		return NAN;
@@ -144,15 +135,4 @@ int observed_falls(const struct observed *o)
 			return 1;
 	}
 	return 0;
-}
-
-double observed_grey(const struct observed *o, double threshold)
-{
-	struct grey g = grey_of(&o->grey);
-	double now, limit = threshold / o->scale;
-
-	if (g.n < GREY_ORDER_MIN)
-		return NAN;
-	now = grey_forecast(&g, 0, g.span / (g.n - 1));
-	return now >= limit ? 0 : grey_passage(now, grey_rate(&g), limit) * o->unit;
 }

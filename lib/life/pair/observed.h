@@ -1,11 +1,11 @@
-/* observed.h - observed gaps of one unit, their rate and the grey forecast of their
- * values
+/* observed.h - observed gaps of one unit, their rate and the grey model of their values
  *
  * Time, gap and value may have any units, which must be the same throughout.
  *
- *	struct observed o = { .rule = RATE_MEAN };
+ *	struct observed o = { 0 };
  *	observed_add(&o, t, leakage, gap);
- *	rate = observed_rate(&o);
+ *	rate = observed_rate(&o, RATE_MEAN);
+ *	left = grey_life(&o.grey, limit, 1, 0, 0);
  */
 #ifndef LIFE_OBSERVED_H
 #define LIFE_OBSERVED_H
@@ -27,8 +27,8 @@ struct moment {
  * with fewer no trend is significant to 1 in 1000.  More are noisier. */
 enum { OBSERVED_KEPT = 17 };
 
+/* All 0 at first. */
 struct observed {
-	enum rate_rule rule; /* all else 0 at first */
 	int begun;
 	long n; /* observations */
 	struct moment first, before,
@@ -37,7 +37,6 @@ struct observed {
 	struct moment kept[OBSERVED_KEPT];
 	long every, passed;
 	int n_kept;
-	double scale, unit; /* of values and times: the first value, the first interval */
 	struct grey_series grey; /* of the observations at times of their own */
 };
 
@@ -52,7 +51,7 @@ double observed_gap(const struct observed *o); /* latest; NAN without observatio
 
 /* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while all
  * observations have the same time. */
-double observed_rate(const struct observed *o);
+double observed_rate(const struct observed *o, enum rate_rule rule);
 
 /* Whether the rate grows (> 0) or falls with time: Mann's test of trend (Econometrica 13,
  * 1945) on the rates in up to 16 intervals, in standard deviations.  Normal where the gap
@@ -63,11 +62,5 @@ double observed_rate_trend(const struct observed *o);
 /* 1 if the gap falls at one moment and grows steadily before and after, as by a repair;
  * from nine observations on. */
 int observed_falls(const struct observed *o);
-
-/* Time from the latest observation until the grey model GM(1,1) of all values since the
- * beginning reaches the threshold; INFINITY: never; NAN below four values.  The sums of
- * grey.h are kept from the oldest value on, centred, so that the cost of a row does not
- * depend on their number. */
-double observed_grey(const struct observed *o, double threshold);
 
 #endif

@@ -1,8 +1,8 @@
 /* paths.c - see paths.h */
 #include "life/pair/paths.h"
-#include "life/pair/remaining.h"
 #include "num/rng.h"
 #include "num/select.h"
+#include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,6 +12,67 @@ struct paths {
 	double mean;       /* of the component per step, by all fragments */
 	gsl_rng *rng;
 };
+
+double remaining_constant(double left, double rate)
+{
+	if (!(left > 0))
+		return 0;
+	return rate > 0 ? left / rate : INFINITY;
+}
+
+/* Largest shape: the relative scatter of the passage is 1e-7 there, and beyond it is
+ * neglected. */
+static const double shape_max = 1e14;
+
+double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
+{
+	double shape, scale, low = 0, high, worn = 0, next;
+
+	if (!(left > 0))
+		return 0;
+	if (!(mean > 0))
+		return INFINITY;
+	shape = mean * mean / variance; /* of one unit of time */
+	scale = variance / mean;
+	high = left / mean;
+	if (!(variance > 0) || !(shape * high < shape_max))
+		return high;
+	if (!(shape > 0) || !isfinite(scale))
+		return INFINITY; /* all wear comes in jumps that almost never happen */
+	/* next: wear at time high */
+	next = gsl_ran_gamma(rng, shape * high, scale);
+	while (next < left) {
+		if (!isfinite(2 * high))
+			return INFINITY;
+		worn = next;
+		next += gsl_ran_gamma(rng, shape * high, scale);
+		low = high;
+		high *= 2;
+	}
+	/* wear at low is below left, wear at high (next) is not */
+	while (high - low > 1e-6 * high) {
+		double half = (high - low) / 2;
+		double part = gsl_ran_beta(rng, shape * half, shape * half);
+		double middle = worn + (next - worn) * part;
+
+		if (middle < left) {
+			worn = middle;
+			low += half;
+		} else {
+			next = middle;
+			high -= half;
+		}
+	}
+	return high;
+}
+
+/* A gamma variate of given mean and variance; the mean where the variance is 0. */
+static double draw_rate(double mean, double variance, gsl_rng *rng)
+{
+	if (!(variance > 0) || !(mean > 0))
+		return mean;
+	return gsl_ran_gamma(rng, mean * mean / variance, variance / mean);
+}
 
 /* The draws of path i, in this order. */
 static void draw_path(struct paths *e, struct partition *partition, long i)
@@ -26,8 +87,8 @@ static void draw_path(struct paths *e, struct partition *partition, long i)
 			partition_large(partition, par->critical, par->cumulative);
 	/* With (4-28) every step has this scatter instead. */
 	if (par->rule != RATE_LAST)
-		path->wear.mean = remaining_draw_rate(
-			path->wear.mean, path->wear.life_variance, e->rng);
+		path->wear.mean =
+			draw_rate(path->wear.mean, path->wear.life_variance, e->rng);
 	path->step_time = par->step_time;
 	if (par->nslopes) {
 		unsigned long unit =
@@ -74,6 +135,11 @@ void paths_free(struct paths *e)
 	free(e);
 }
 
+const struct paths_par *paths_par(const struct paths *e)
+{
+	return &e->par;
+}
+
 const struct path *paths_get(const struct paths *e, long i)
 {
 	return e->path ? &e->path[i] : NULL;
@@ -116,6 +182,12 @@ static double wear_out(struct paths *e, long i, double left, double tau)
 	return tau * remaining_gamma(left, w->mean, w->step_variance, e->rng);
 }
 
+/* Time from t to the end of the step in which large particles become too many. */
+static double until_large(long step, double step_time, double t)
+{
+	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
+}
+
 /* Error of the state on path i, in standard errors. */
 static double draw_error(const struct paths *e, long i)
 {
@@ -128,7 +200,7 @@ static double draw_error(const struct paths *e, long i)
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life)
 {
-	double left = limit - observed_gap(o), rate = observed_rate(o);
+	double left = limit - observed_gap(o), rate = observed_rate(o, e->par.rule);
 	int filtered = e->par.rule == RATE_FILTER;
 	double scaled = INFINITY; /* step time by which the mean wears as observed */
 
@@ -160,7 +232,7 @@ long paths_predict(struct paths *e, const struct observed *o, const double *pass
 			life[i] = remaining_constant(here, rate);
 		if (e->path && !isnan(e->par.critical))
 			life[i] = fmin(life[i],
-				remaining_large(e->path[i].large_step, tau, o->last.t));
+				until_large(e->path[i].large_step, tau, o->last.t));
 	}
 	return e->par.count;
 }

@@ -1,5 +1,13 @@
 /* paths.h - Monte-Carlo ensemble of units: the wear of each and its remaining life
  *
+ * Remaining wear life at time t is the lesser of (Li's thesis, eq. 4-26 and 4-27, with
+ * signs and indices set right)
+ *
+ *	(Va - V(t)) / Vdot        total volume,
+ *	Ts - t                    Ts: large particles reach their critical share,
+ *
+ * and Va - V(t) = A (H - h(t)) for a gap that opens evenly (4-31).
+ *
  * Path i draws its own replicate of the fragments, its own unit and its own step time
  * from streams (seed, first + i), so that any split of an ensemble gives the same
  * numbers.
@@ -15,6 +23,7 @@
 
 #include "life/pair/observed.h"
 #include "life/prior/partition.h"
+#include <gsl/gsl_rng.h>
 #include <stdint.h>
 
 struct paths_par {
@@ -47,6 +56,7 @@ struct paths;
 struct paths *paths_new(const struct paths_par *par, struct partition *partition);
 void paths_free(struct paths *e);
 
+const struct paths_par *paths_par(const struct paths *e);
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
 /* Rate of the gap over the paths, per s: median, and half of the width of the middle
@@ -61,5 +71,15 @@ void paths_rate(const struct paths *e, double *mean, double *sd);
  * prediction yet. */
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life);
+
+/* Time to wear volume left at a constant rate (4-29); never for rate <= 0.  Any unit of
+ * time and volume. */
+double remaining_constant(double left, double rate);
+/* The same where the rate changes from step to step about its mean (4-28): first
+ * passage of a gamma process, whose increments over one unit of time have the given
+ * mean and variance and are never negative (van Noortwijk, Reliab. Eng. Syst. Saf. 94,
+ * 2009).  Exact in distribution to a relative 1e-6, at a cost independent of the number
+ * of steps: the path is doubled until it is past, then bisected by beta bridges. */
+double remaining_gamma(double left, double mean, double variance, gsl_rng *rng);
 
 #endif

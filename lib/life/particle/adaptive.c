@@ -337,18 +337,6 @@ static void observe(struct adaptive *a, double y, double gap, struct adaptive_ro
 	}
 }
 
-/* Zeros are the same in any scale, so the scale may be set after them. */
-static void learn_scale(struct adaptive *a, double y)
-{
-	int exponent;
-
-	if (a->scaled || isnan(y) || y == 0)
-		return;
-	frexp(y, &exponent);
-	a->scale = ldexp(1, exponent < -1000 ? -1000 : exponent);
-	a->scaled = 1;
-}
-
 /* The first row with a value. */
 static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
@@ -401,8 +389,11 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
-	learn_scale(a, y);
+	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, 0 };
+	if (!a->scaled && !isnan(y) && y != 0) { /* zeros are the same in any scale */
+		a->scale = grey_scale(y);
+		a->scaled = 1;
+	}
 	if (a->rows > 0)
 		advance(a, t, y, row);
 	else if (!isnan(y))
@@ -411,7 +402,6 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 		return;
 	a->time = t;
 	a->rows++;
-	row->noise = observation_noise(a) * a->scale;
 	row->grey *= a->scale;
 	row->prediction *= a->scale;
 	row->state *= a->scale;

@@ -36,7 +36,6 @@ struct adaptive_row {
 			    * observations before it; NAN at the first */
 	double prediction; /* forecast by the filter */
 	double state;      /* weighted mean after the observation, if there was one */
-	double noise;      /* sigma_v in use */
 	double ess;        /* effective sample size before resampling */
 	int order;         /* of the model that made prediction; 0: none yet */
 };

@@ -1,17 +1,7 @@
 /* metrics.c - see metrics.h */
 #include "life/score/metrics.h"
-#include <errno.h>
+#include "num/select.h"
 #include <math.h>
-#include <stdlib.h>
-
-struct metrics {
-	struct metrics_par par;
-	size_t n, infinite;
-	double error, abs_error, square_error, accuracy, crps;
-	size_t inside, covered;
-	double since; /* start of the present uninterrupted run of good predictions; NAN
-			 if there is none */
-};
 
 double metric_quantile(const double *sorted, size_t n, double level)
 {
@@ -24,6 +14,24 @@ double metric_quantile(const double *sorted, size_t n, double level)
 	if (isinf(sorted[i + 1]))
 		return sorted[i + 1];
 	return sorted[i] + part * (sorted[i + 1] - sorted[i]);
+}
+
+void metric_cut(double *sample, size_t n, double horizon)
+{
+	for (size_t i = 0; i < n; i++)
+		if (!(sample[i] <= horizon))
+			sample[i] = INFINITY;
+	sort_numbers(sample, n);
+}
+
+/* A running mean does not overflow at 1e300. */
+double metric_mean(const double *sorted, size_t n, size_t *failed)
+{
+	double mean = 0;
+
+	for (*failed = 0; *failed < n && isfinite(sorted[*failed]); ++*failed)
+		mean += (sorted[*failed] - mean) / (double)(*failed + 1);
+	return *failed ? mean : NAN;
 }
 
 /* Sums rectangles between neighbours: every term is positive, so that there is no
@@ -61,30 +69,6 @@ static double share_within(const double *sample, size_t n, double lower, double 
 	return (double)inside / (double)n;
 }
 
-struct metrics *metrics_new(const struct metrics_par *par)
-{
-	struct metrics *m;
-
-	if (!isfinite(par->eol) || !(par->alpha > 0) ||
-		!(par->beta >= 0 && par->beta <= 1) || !(par->limit >= 0)) {
-		errno = EDOM;
-		return NULL;
-	}
-	m = calloc(1, sizeof *m);
-	if (!m)
-		return NULL;
-	m->par = *par;
-	if (m->par.limit == 0)
-		m->par.limit = INFINITY;
-	m->since = NAN;
-	return m;
-}
-
-void metrics_free(struct metrics *m)
-{
-	free(m);
-}
-
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
 	double upper, const double *sample, size_t n, struct metrics_row *row)
 {
@@ -99,11 +83,12 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 		sample, n, truth * (1 - m->par.alpha), truth * (1 + m->par.alpha));
 	r.inside = r.mass >= m->par.beta;
 	r.covered = lower <= truth && truth <= upper;
-	r.crps = metric_crps(sample, n, truth, m->par.limit);
+	r.crps =
+		metric_crps(sample, n, truth, m->par.limit > 0 ? m->par.limit : INFINITY);
 	if (share_within(sample, n, truth - wide, truth + wide) < m->par.beta)
-		m->since = NAN;
-	else if (isnan(m->since))
-		m->since = t;
+		m->horizon = 0;
+	else if (m->horizon == 0)
+		m->horizon = truth;
 	m->n++;
 	if (isinf(point)) {
 		m->infinite++;
@@ -134,7 +119,7 @@ struct metrics_sum metrics_get(const struct metrics *m)
 		.rmse = sqrt(m->square_error / finite),
 		.accuracy = m->accuracy / finite,
 		.alpha_lambda = (double)m->inside / n,
-		.horizon = m->n ? (isnan(m->since) ? 0 : m->par.eol - m->since) : NAN,
+		.horizon = m->n ? m->horizon : NAN,
 		.coverage = (double)m->covered / n,
 		.crps = m->crps / n,
 	};

@@ -4,11 +4,9 @@
  * interval.  With the true end of life T the truth is r = T - t.  Any unit of time, the
  * same one throughout.
  *
- *	struct metrics_par par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 };
- *	struct metrics *m = metrics_new(&par);
- *	metrics_add(m, t, mean, q05, q95, sample, n, NULL);
- *	struct metrics_sum sum = metrics_get(m);
- *	metrics_free(m);
+ *	struct metrics m = { .par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 } };
+ *	metrics_add(&m, t, mean, q05, q95, sample, n, NULL);
+ *	struct metrics_sum sum = metrics_get(&m);
  *
  * Definitions follow Saxena, Celaya, Saha, Saha, Goebel, "Metrics for offline
  * evaluation of prognostic performance", IJPHM 1 (2010), with accuracies relative
@@ -25,6 +23,12 @@
  * (n - 1) level; the last ones may be INFINITY ("never"). */
 double metric_quantile(const double *sorted, size_t n, double level);
 
+/* Sets the samples beyond the horizon to INFINITY, and sorts. */
+void metric_cut(double *sample, size_t n, double horizon);
+/* Mean of the finite ones of ascending samples, NAN without any; *failed: their number.
+ */
+double metric_mean(const double *sorted, size_t n, size_t *failed);
+
 /* Continuous ranked probability score, the integral of (F(x) - [x >= truth])^2 over
  * x <= limit: 0 is perfect, |error| for a single sample.  sorted: n >= 1 ascending
  * samples.  Samples may be INFINITY, which needs a finite limit for a finite score. */
@@ -32,7 +36,7 @@ double metric_crps(const double *sorted, size_t n, double truth, double limit);
 
 struct metrics_par {
 	double eol;   /* true end of life, on the axis of t */
-	double alpha; /* half-width of the accuracy cone, share: 0.2 */
+	double alpha; /* half-width of the accuracy cone, share > 0: 0.2 */
 	double beta;  /* least probability inside the cone: 0.5 */
 	double limit; /* upper end of the CRPS integral; 0: none */
 };
@@ -62,11 +66,14 @@ struct metrics_sum {
 	double crps;
 };
 
-struct metrics;
-
-/* NULL if a parameter is out of range (errno EDOM) or memory is short. */
-struct metrics *metrics_new(const struct metrics_par *par);
-void metrics_free(struct metrics *m);
+/* Sums of the predictions so far; all 0 at first but par. */
+struct metrics {
+	struct metrics_par par;
+	size_t n, infinite, inside, covered;
+	double error, abs_error, square_error, accuracy, crps;
+	double horizon; /* truth at the start of the present run of good predictions; 0:
+			 * none */
+};
 
 /* Adds the prediction made at t, n >= 1 ascending samples; times must not decrease.  row
  * may be NULL.

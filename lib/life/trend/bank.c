@@ -422,14 +422,10 @@ static void start(struct bank *b)
 	b->base = median_of_three(r[0].y, r[1].y, r[2].y);
 	b->range = b->par.threshold - b->base;
 	b->unit = 0.5 * (r[2].t - r[0].t); /* one of the two gaps may be tiny */
-	b->first = b->last = b->seen = r[0].t;
+	b->last = b->seen = r[0].t;
 	b->level = damage_of(b, r[0].y);
 	b->before = b->farthest = r[0].y;
-	b->frozen = b->stuck = b->freed = b->repairs = b->healed = b->jumped = 0;
-	b->idle = b->age = b->squares = b->longest = b->bred = b->scored = 0;
 	b->gap = 1;
-	b->trends = 0;
-	memset(state_of(b, b->trend), 0, (size_t)b->capacity * size_of_state(&b->par));
 	for (int i = 0; i < b->shapes; i++)
 		for (int k = 0; k < KINDS && is_used(b, i); k++) {
 			struct trend *tr = &b->trend[b->trends++];

@@ -61,7 +61,7 @@ struct bank {
 	long rows;              /* taken */
 	double base, range;     /* y at D = 0; from there to the threshold, signed */
 	double unit;            /* of time: the mean of the first two gaps */
-	double first, last;     /* times without the idle time */
+	double last;            /* time of the last row, without the idle time */
 	double idle;            /* total idle time */
 	double seen;            /* time of the last row, with the idle time */
 	double previous;        /* gap before it, with the idle time, in units */

@@ -1,8 +1,8 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
+#include "life/score/metrics.h"
 #include "life/trend/passage.h"
-#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,7 +12,6 @@ enum { LITERAL_STEPS = 1000 };
 struct predict {
 	struct predict_par par;
 	struct bank *bank; /* NULL for the grey and the literal model */
-	double scale;      /* power of two near the threshold, for the grey model */
 	struct progress {
 		long rows;
 		double first, last;      /* times */
@@ -25,12 +24,9 @@ struct predict *predict_new(const struct predict_par *par)
 	static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL,
 		BANK_POWER, BANK_RATE, BANK_SATURATING, 0, 0 };
 	struct predict *p = calloc(1, sizeof *p);
-	int exponent = 0;
 
 	if (!p)
 		return NULL;
-	frexp(par->bank.threshold - par->zero, &exponent);
-	p->scale = ldexp(1, exponent);
 	p->par = *par;
 	p->par.bank.families =
 		families[par->model] | (par->bank.n_more > 0 ? BANK_OTHER : 0);
@@ -59,8 +55,7 @@ void predict_pass(struct predict *p, struct state *s)
 void predict_add(struct predict *p, double t, double y, double state, const double *load)
 {
 	if (p->par.model == PREDICT_GREY)
-		grey_append(
-			&p->now.grey, (state - p->par.zero) / p->scale, t - p->now.last);
+		grey_append(&p->now.grey, state - p->par.zero, t - p->now.last);
 	if (p->now.rows++ == 0)
 		p->now.first = t;
 	p->now.last = t;
@@ -81,26 +76,14 @@ struct bank *predict_bank(struct predict *p)
 	return p->bank;
 }
 
-static enum num_status draw_grey(struct predict *p, double *life)
+static enum num_status draw_grey(const struct predict *p, double *life)
 {
-	struct grey g = grey_of(&p->now.grey);
-	double limit = (p->par.bank.threshold - p->par.zero) / p->scale;
-
-	if (g.n < GREY_ORDER_MIN)
+	if (p->now.grey.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
-	for (int i = 0; i < predict_draws(p); i++) {
-		double rate_z = bank_chance_normal(p->par.chances, i, 0),
-		       level_z = bank_chance_normal(p->par.chances, i, 1);
-		double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z;
-		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
-			       rate * (g.tail - g.fit.mean_x);
-		double now = grey_curve(
-			lanes_all(level), lanes_all(rate), g.span, g.span / (g.n - 1))[0];
-
-		life[i] = p->par.bank.direction * (now - limit) >= 0
-				  ? 0
-				  : grey_passage(now, rate, limit);
-	}
+	for (int i = 0; i < predict_draws(p); i++)
+		life[i] = grey_life(&p->now.grey, p->par.bank.threshold - p->par.zero,
+			p->par.bank.direction, bank_chance_normal(p->par.chances, i, 0),
+			bank_chance_normal(p->par.chances, i, 1));
 	return NUM_OK;
 }
 
@@ -123,17 +106,13 @@ enum num_status predict_life(struct predict *p, double *life)
 {
 	double horizon = p->par.horizon;
 	enum num_status status = draw_lives(p, life);
-	int n = predict_draws(p);
 
 	if (status != NUM_OK)
 		return status;
 	if (!(horizon > 0))
 		horizon = p->par.bank.n_more > 0 ? INFINITY
 						 : 10 * (p->now.last - p->now.first);
-	for (int i = 0; i < n; i++)
-		if (!(life[i] <= horizon))
-			life[i] = INFINITY;
-	sort_numbers(life, (size_t)n);
+	metric_cut(life, (size_t)predict_draws(p), horizon);
 	return NUM_OK;
 }
 
