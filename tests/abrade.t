@@ -184,6 +184,8 @@ fails "a surface that is overwritten" 2 'the same file is read and written' \
 	abrade --gap 9um $p --surface kept.nrrd --particles kept.nrrd four.tsv
 same "it is kept" h.nrrd kept.nrrd
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
+{ cat four.tsv && echo '# doubtful: pulses differ'; } >self.tsv
+fails "a table that calls itself doubtful" 3 'self.tsv: doubtful by its own account: pulses differ' abrade --gap 9um $p self.tsv
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv
 fails "an aspect below one" 1 'line 2: aspect is 0.5, want 1 or more' abrade --gap 1um $p flat.tsv
 fails "a diameter of 10 metres" 1 'line 2: diameter is 10 m, want metres' sh -c "printf 'diameter\n10\n' | abrade --gap 1um $p"

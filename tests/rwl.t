@@ -87,6 +87,9 @@ near "the life follows from all particles" "$(cell out 8 mean)" \
 is "a doubtful particle is left out and reported" "$(column rows_doubtful crowd.stats): $(grep -c "1 rows are doubtful" err)" "1: 1"
 is "a particle without diameter is reported" "$(column particles_without_diameter crowd.stats): $(grep ignored err)" \
 	"1: rwl: crowd.tsv: rows ignored because they have no diameter: 1"
+{ cat crowd.tsv && echo '# doubtful: pulses differ'; } >self.tsv
+rwl --threshold-volume 1e-7m3 self.tsv >out 2>err
+is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'self.tsv: doubtful by its own account: pulses differ' err) $(grep -c '^# doubtful' out)" "3 1 1"
 
 # Large particles: 1 of 4 in step 1, 3 of 5 in step 2.
 {

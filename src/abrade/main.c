@@ -343,7 +343,7 @@ int main(int argc, char **argv)
 		doubtful = 1;
 	}
 	verdict_report();
-	doubtful |= verdict_equivalent();
+	doubtful |= verdict_equivalent() | particles_doubted(source);
 	particles_close(source);
 	if (table)
 		table_done(table);

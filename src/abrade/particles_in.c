@@ -36,7 +36,7 @@ struct row {
 struct source {
 	struct row *row;
 	size_t rows, room, at;
-	int apart, shaped, stepped;
+	int apart, shaped, stepped, doubted;
 	char *upstream;
 	double *diameter, *aspect; /* of the present gap */
 	/* drawn */
@@ -153,6 +153,7 @@ struct source *particles_read(const char *path)
 	qsort(s->row, s->rows, sizeof *s->row, in_order);
 	if (cr >= 0)
 		check_parts(s, table_name(t));
+	s->doubted = verdict_doubted(t);
 	table_close(t);
 	s->diameter = xcalloc(s->rows + 1, sizeof *s->diameter);
 	s->aspect = xcalloc(s->rows + 1, sizeof *s->aspect);
@@ -224,6 +225,11 @@ int particles_shaped(const struct source *s)
 int particles_stepped(const struct source *s)
 {
 	return s->stepped;
+}
+
+int particles_doubted(const struct source *s)
+{
+	return s->doubted;
 }
 
 const char *particles_upstream(const struct source *s)

@@ -340,13 +340,12 @@ static int check_state(
 	return status;
 }
 
-/* Says so if particles are not of their diameter; its status. */
-static int check_sizes(struct lifetable *out)
+/* Says so if the particles read are doubtful; its status. */
+static int check_particles(struct lifetable *out)
 {
-	if (!state_equivalent())
+	if (!state_doubt())
 		return 0;
-	table_comment(lifetable_out(out), "doubtful",
-		"the diameters of particles that are not ferrous");
+	table_comment(lifetable_out(out), "doubtful", "%s", state_doubt());
 	return EXIT_NOCONV;
 }
 
@@ -393,7 +392,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_state(&s, f, out) | check_sizes(out);
+	status |= check_state(&s, f, out) | check_particles(out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

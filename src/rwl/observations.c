@@ -21,7 +21,8 @@ static const double most[] = { INFINITY, 0.1, 1e-2, 1e-2, 0.1 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
-static int equivalent, debris; /* 1: a table of particles has been opened */
+static int debris;      /* 1: a table of particles has been opened */
+static const char *why; /* its particles are doubtful */
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
@@ -149,7 +150,10 @@ int state_next(struct observations *s)
 				table_name(t), s->passed);
 		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
-			equivalent |= verdict_equivalent();
+			if (verdict_doubted(t))
+				why = "the table of particles says so of itself";
+			if (verdict_equivalent())
+				why = "the diameters of particles that are not ferrous";
 		}
 		check_lowest(s);
 		return 0;
@@ -212,9 +216,9 @@ void state_check(void)
 		die(EXIT_USAGE, "--%s requires a state of --quantity debris", option);
 }
 
-int state_equivalent(void)
+const char *state_doubt(void)
 {
-	return equivalent;
+	return why;
 }
 
 double state_slope(const char *file, const struct pair *pair, double skip)

@@ -58,8 +58,8 @@ int state_next(struct observations *s);
 
 /* Dies if an option of particles was given and no table of them has been opened. */
 void state_check(void);
-/* 1 if some of the particles read so far are not of their diameter. */
-int state_equivalent(void);
+/* Why the particles read so far are doubtful; NULL: they are not. */
+const char *state_doubt(void);
 
 /* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */
 double state_slope(const char *file, const struct pair *pair, double skip);
