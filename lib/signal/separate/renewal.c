@@ -7,7 +7,7 @@
 
 /* Frames between two looks at the rows, so that they do not depend on the sizes of the
  * pieces passed. */
-enum { PIECE = 1024 };
+enum { PIECE = 256 };
 
 /* A stretch is learned from at least this part of what is usual. */
 enum { LEAST_PART = 8 };
@@ -157,12 +157,22 @@ static int doubts(const struct transit *p)
 										    : 1;
 }
 
+/* 1 if the instrument is that of a crowd, in which sections are unresolved. */
+static int is_crowd(const struct stretch *t)
+{
+	struct instrument view;
+
+	return separate_instrument(t->s, &view) && (view.crowded || view.cal.dense);
+}
+
 /* Logarithm of the likelihood ratio of a row, of shares HALF and OFTEN doubted.  Two
  * particles that arrive together do not tell of the instrument. */
-static double change_of(const struct transit *p)
+static double change_of(const struct stretch *t, const struct transit *p)
 {
 	int d = doubts(p);
 
+	if (p->together || (p->verdict == SEPARATE_UNRESOLVED && is_crowd(t)))
+		return 0;
 	return d > 0 ? log(HALF / OFTEN) : d == 0 ? log((1 - HALF) / (1 - OFTEN)) : 0;
 }
 
@@ -225,7 +235,7 @@ static enum separate_status take_rows(struct renewal *r, struct stretch *t)
 		if (room_for(&t->row, &t->room, t->rows + 1, sizeof *t->row))
 			return SEPARATE_MEMORY;
 		t->row[t->rows++] = p;
-		t->sum += change_of(&p);
+		t->sum += change_of(t, &p);
 		if (t == &r->now && t->sum <= 0 && r->judged && !r->next.s &&
 			release(r) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
@@ -262,8 +272,7 @@ static enum separate_status look(struct renewal *r)
 		return SEPARATE_OK;
 	if (!r->judged && (is_ready(now) || is_unlearned(now))) {
 		r->judged = 1;
-		if (!is_described(now) &&
-			(is_unlearned(now) || separate_calibration(now->s)))
+		if (is_unlearned(now) || separate_doubtful(now->s) == SEPARATE_FOREIGN)
 			learn = half_of(r, now);
 		else if (now->sum <= 0)
 			return release(r);
