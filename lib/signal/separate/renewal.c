@@ -249,7 +249,7 @@ static enum separate_status take_rows(struct renewal *r, struct stretch *t)
 						       : SEPARATE_OK;
 }
 
-/* What a stretch from now->origin on is learned from if not from as much as now. */
+/* Half of the frames that a stretch is learned from, or of those there are of it. */
 static size_t half_of(const struct renewal *r, const struct stretch *t)
 {
 	size_t most = (size_t)(r->upto - t->origin);
