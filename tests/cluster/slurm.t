@@ -90,8 +90,8 @@ fi
 surfaces='roughgen --points 64 --length 10um --sq 0.02um --corr 1um --acf gauss --crown auto'
 rest='bemcontact --pressure 50MPa --young 210GPa,210GPa | debrisgen --yield 355MPa --friction 0.3 2>/dev/null'
 eval "$surfaces --count 12 | $rest" >whole
-# commas and blanks in the command, and time to be cancelled in
-command="sleep 4; $surfaces --first \$FIRST --count \$COUNT | $rest"
+# commas and blanks in the command, which waits until the tasks are cancelled
+command="until [ -e $work/go ]; do sleep 0.1; done; $surfaces --first \$FIRST --count \$COUNT | $rest"
 ended='[ -z "$(squeue -h)" ]'
 submit() {
 	sbatch --parsable --array=0-5 --output="$work/log.%a" "$top/scripts/slurm.sh" "$command" "$work/parts" 2
@@ -103,6 +103,8 @@ join() {
 job=$(submit)
 waits 'squeue -h -t running | grep -q .'
 scancel "${job}_1" "${job}_5"
+waits '[ -z "$(squeue -h -r -o %K | grep -x "[15]")" ]' || fail 'the cancelled tasks end' "$(squeue)"
+touch go
 waits "$ended" || fail 'the array ends' "$(squeue)"
 is 'the tasks that were cancelled left no member' "$(ls parts/1.done parts/5.done 2>/dev/null)" ''
 ls -l --time-style=full-iso parts/0.done parts/2.done >before
