@@ -506,9 +506,10 @@ static enum separate_status settle(
 	return status;
 }
 
-/* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
- * effect of an estimated filter; explanations of a colour are compared by how well
- * uncorrected pulses fit. */
+/* 1 if the shape is to be corrected by all pulses.  One given by the caller is kept,
+ * except for the effect of an estimated filter; one taken from a few events has their
+ * noise; explanations of a colour are compared by how well uncorrected known pulses fit.
+ */
 static int wants_correction(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
 {
@@ -517,7 +518,8 @@ static int wants_correction(
 	if (c->estimated)
 		return c->chi2 > 1.1;
 	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
-	       !(c->whitening.tap && c->presumed_white) && correct_doubtful(ex, c);
+	       (c->measured || (!(c->whitening.tap && c->presumed_white) &&
+				       correct_doubtful(ex, c)));
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
