@@ -278,25 +278,24 @@ static const double MORE_WORK = 2;
 static enum separate_status try_velocities(
 	struct look *look, const struct velocities *v, struct calibration *c)
 {
-	const struct calibrate_par *par = look->par;
-	struct calibrate_par limited = *par;
+	struct calibrate_par limited = *look->par;
 	double lo = v->fastest / WIDER, hi = v->slowest * WIDER, low;
+	struct look wide = { .par = &limited,
+		.x = { look->x[0], look->x[1] },
+		.n = look->n,
+		.work = look->work,
+		.seen = 1 };
 	enum separate_status status;
 
 	limited.lag = v->ratio * 0.5 * (lo + hi);
 	limited.spread = fmin((hi - lo) / (hi + lo), WIDEST);
-	limited.most = HALF * par->most;
+	limited.most *= HALF;
 	if (learn_duration(PULSE_SINE, 1, &low) != NUM_OK)
 		return SEPARATE_MEMORY;
-	look->lowest = 0.5 * (lo + hi) / low;
-	look->seen = 1;
-	look->par = &limited;
-	status = find(look, c);
-	*look = (struct look){ .par = par,
-		.x = { look->x[0], look->x[1] },
-		.n = look->n,
-		.attempts = look->attempts,
-		.work = look->work };
+	wide.lowest = 0.5 * (lo + hi) / low;
+	status = find(&wide, c);
+	look->attempts = wide.attempts;
+	look->work = wide.work;
 	if (status == SEPARATE_OK && (!learn_describes(c) || c->dense)) {
 		calibration_clear(c);
 		status = SEPARATE_HARD;
