@@ -188,14 +188,14 @@ static void test_edge(void)
 	static struct evidence e[ROWS];
 	struct validation *v = validation_new();
 
-	validation_range(v, -6, 6);
+	validation_range(v, 600, -6, 6);
 	draw(e, 0, 0.1, 140000);
 	validation_test(v, e, ROWS);
 	ok(doubted(e, 0, ROWS) < 0.02,
 		"no row is doubted if velocities do not fill the range");
 	validation_free(v);
 	v = validation_new();
-	validation_range(v, -6, 6);
+	validation_range(v, 600, -6, 6);
 	memset(e, 0, sizeof e);
 	for (int i = 0; i < ROWS; i++)
 		e[i] = (struct evidence){ .group = i + 1,

@@ -3,6 +3,7 @@
 #include "num/dot.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
+#include "signal/learn/velocities.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -257,11 +258,50 @@ static enum separate_status find(struct look *look, struct calibration *c)
 /* Pulses near the limits of the range of delays from which on it is widened. */
 enum { SOME = 2 };
 
+/* Factor by which velocities may exceed those seen at either end: a row within a tenth of
+ * the logarithm of the range, EDGE of validate.c, is doubted, and the widest range is
+ * nine times its least.  It is the widest in which a fit that goes JOINT_BEYOND does not
+ * reach pulses that last no time. */
+static const double WIDER = 1.3, WIDEST = 0.8;
+
+/* Share of the work that may be done with them; the rest is for nearly equal ones. */
+static const double HALF = 0.5;
+
 /* Work of learning with a wider range, over that with the narrower: the right range takes
  * 0.5 to 1.3 in 20 records of turbulent flow, and a range that lets pulses describe
  * bubbles 2.3 to 7 in 6 (scenes turbulent and group-turbulent of
  * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles). */
 static const double MORE_WORK = 2;
+
+/* Learns the instrument with the range of velocities v, whose delays are those around the
+ * middle of the range.  HARD if the pulses do not describe the record. */
+static enum separate_status try_velocities(
+	struct look *look, const struct velocities *v, struct calibration *c)
+{
+	struct calibrate_par limited = *look->par;
+	double lo = v->fastest / WIDER, hi = v->slowest * WIDER, low;
+	struct look wide = { .par = &limited,
+		.x = { look->x[0], look->x[1] },
+		.n = look->n,
+		.work = look->work,
+		.seen = 1 };
+	enum separate_status status;
+
+	limited.lag = v->ratio * 0.5 * (lo + hi);
+	limited.spread = fmin((hi - lo) / (hi + lo), WIDEST);
+	limited.most *= HALF;
+	if (learn_duration(PULSE_SINE, 1, &low) != NUM_OK)
+		return SEPARATE_MEMORY;
+	wide.lowest = 0.5 * (lo + hi) / low;
+	status = find(&wide, c);
+	look->attempts = wide.attempts;
+	look->work = wide.work;
+	if (status == SEPARATE_OK && (!learn_describes(c) || c->dense)) {
+		calibration_clear(c);
+		status = SEPARATE_HARD;
+	}
+	return status;
+}
 
 /* Learns the instrument again with a wider range of delays, which is kept if the pulses
  * describe the record, and better: a pulse beyond a range that is too narrow takes two
@@ -336,10 +376,17 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n };
-	enum separate_status status;
+	struct velocities v = { 0 };
+	enum separate_status status = SEPARATE_HARD;
 
 	memset(c, 0, sizeof *c);
-	status = find(&look, c);
+	if (isnan(par->lag) && isnan(par->spread) && isnan(par->duration) &&
+		velocities_find(x1, x2, n, &v) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (v.slow * (1 - CALIBRATE_WIDE) > v.fast * (1 + CALIBRATE_WIDE))
+		status = try_velocities(&look, &v, c);
+	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
+		status = find(&look, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
 		status = try_wide(&look, c);

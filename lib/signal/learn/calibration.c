@@ -31,6 +31,13 @@ double calibration_plug(const struct calibration *c)
 	return calibration_reach(CALIBRATE_PLUG, (double)c->shift, c->duration);
 }
 
+double calibration_most(double transit, double least)
+{
+	static const double SAFELY = 0.95;
+
+	return least + SAFELY * (transit + least) / JOINT_BEYOND;
+}
+
 void calibration_widen(double duration, double *least, double *most)
 {
 	double margin = fmax(0.5 * (*most - *least), 0.02 * duration);

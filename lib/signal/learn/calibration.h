@@ -140,6 +140,10 @@ double calibration_reach(double share, double transit, double duration);
 /* The same for plug flow. */
 double calibration_plug(const struct calibration *c);
 
+/* Most that a delay may be above least so that even beyond the range, as far as a fit may
+ * go, a particle takes time to pass. */
+double calibration_most(double transit, double least);
+
 /* Widens the range of the delays seen so that it contains later ones: by half of it on
  * either side, and by at least 0.02 of a duration. */
 void calibration_widen(double duration, double *least, double *most);

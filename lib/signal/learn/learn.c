@@ -217,7 +217,8 @@ static enum separate_status set_single(const struct examples *ex, const double *
 	const double *y2, size_t n, const struct guess *guess, struct calibration *c)
 {
 	struct template one = { 0 };
-	double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration);
+	double reach = fmax(c->delta_max,
+		calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration));
 
 	if (template_find(&one, y1, y2, ex->hidden, n, c->duration, c->transit, c->width,
 		    reach, guess->single) != NUM_OK)

@@ -584,7 +584,8 @@ static enum separate_status find_duration(const struct calibrate_par *par,
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
 		NUM_OK)
 		return SEPARATE_MEMORY;
-	rec->low = learn_lowest_lag(rec->work, rec->n / 4);
+	rec->low =
+		look->lowest > 0 ? look->lowest : learn_lowest_lag(rec->work, rec->n / 4);
 	if (find_width(rec, c) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!c->whitening.tap)
@@ -673,7 +674,8 @@ static enum separate_status find_template(const struct calibrate_par *par,
 	found->events = 0;
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
-		double reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
+		double reach = calibration_reach(
+			fmax(CALIBRATE_WIDE, par->spread), (double)c->shift, T);
 		struct template other = { .alone = found->alone, .white = found->white };
 
 		if (T < SHAPE_SHORTEST)

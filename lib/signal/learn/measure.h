@@ -21,6 +21,7 @@ struct look {
 	enum whiten_kind kind; /* the kind of colour that is being tried */
 	int settled;           /* 1: this is the last attempt */
 	double low;            /* lag of the lowest autocorrelation */
+	double lowest;         /* the same of the middle velocity if it is known, or 0 */
 	double wander;         /* mean square change of lines over some thousand samples,
 				  noise 1 */
 	struct colour noise;

@@ -152,7 +152,7 @@ static enum separate_status start(struct separate *s, size_t n)
 		sections_skip(s->sections, s->done);
 	s->hold = s->buffer[0].begin + (long long)n;
 	if (isnan(s->par.known.spread) && !isinf(c->transit))
-		validation_range(s->validation, c->delta_min, c->delta_max);
+		validation_range(s->validation, c->transit, c->delta_min, c->delta_max);
 	s->holding = s->par.method == SEPARATE_FIT && n > 0;
 	if (s->par.kept) {
 		validation_tell_flow(s->validation, &s->kept.flow);

@@ -15,8 +15,9 @@ struct delay {
 struct validation {
 	struct delay delay[EVIDENCE_KEPT];
 	unsigned char doubted[EVIDENCE_KEPT], at_edge[EVIDENCE_KEPT];
-	size_t delays, rows;         /* taken in so far */
-	double middle, half;         /* of the range of delays; half 0: not known */
+	size_t delays, rows; /* taken in so far */
+	/* Range of delays; transit 0: not known. */
+	double transit, least, most;
 	struct flow flow, told;      /* as estimated, and as told before */
 	double place[EVIDENCE_KEPT]; /* of weak pulses beside the nearest larger one */
 	size_t places;
@@ -33,10 +34,11 @@ void validation_free(struct validation *v)
 	free(v);
 }
 
-void validation_range(struct validation *v, double least, double most)
+void validation_range(struct validation *v, double transit, double least, double most)
 {
-	v->middle = 0.5 * (least + most);
-	v->half = 0.5 * (most - least);
+	v->transit = transit;
+	v->least = least;
+	v->most = most;
 }
 
 void validation_tell_flow(struct validation *v, const struct flow *flow)
@@ -136,16 +138,23 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 static const double EDGE = 0.2;
 
 /* 1 if the delay lies at the edge, and its error is smaller than that.  The range is
- * learned to be twice as wide as that of the particles. */
+ * learned to be wider than that of the particles, by a share of their velocities: these
+ * are compared by their logarithms. */
 static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
-	return v->half > 0 && e->var > 0 && sqrt(e->var) < EDGE * v->half &&
-	       fabs(e->delay - v->middle) > (1 - EDGE) * v->half;
+	double half, middle, whole = v->transit + e->delay;
+
+	if (!(v->transit > 0) || !(e->var > 0))
+		return 0;
+	half = 0.5 * log((v->transit + v->most) / (v->transit + v->least));
+	middle = 0.5 * log((v->transit + v->most) * (v->transit + v->least));
+	return sqrt(e->var) < EDGE * half * whole &&
+	       fabs(log(whole) - middle) > (1 - EDGE) * half;
 }
 
 double validation_half(const struct validation *v)
 {
-	return isfinite(v->flow.var) ? v->half : 0;
+	return isfinite(v->flow.var) ? 0.5 * (v->most - v->least) : 0;
 }
 
 /* --- weak pulses that recur */

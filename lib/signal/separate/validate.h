@@ -67,8 +67,9 @@ struct flow {
 void validation_tell_flow(struct validation *v, const struct flow *flow);
 void validation_flow(const struct validation *v, struct flow *flow);
 
-/* Range of the delays that are searched, learned to be wider than that of particles. */
-void validation_range(struct validation *v, double least, double most);
+/* Range of the delays that are searched, learned to be wider than that of particles;
+ * transit: the time from sensor to sensor of a particle whose delay is 0. */
+void validation_range(struct validation *v, double transit, double least, double most);
 
 /* Half of this range; 0: it, or the flow, is not known. */
 double validation_half(const struct validation *v);
