@@ -518,9 +518,10 @@ static int wants_correction(
 		return 0;
 	if (c->estimated)
 		return c->chi2 > 1.1;
-	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
-	       (c->measured || (!(c->whitening.tap && c->presumed_white) &&
-				       correct_doubtful(ex, c)));
+	if (par->pulse != CALIBRATE_ANY_PULSE || ex->pieces ||
+		(c->whitening.tap && c->presumed_white && !c->measured))
+		return 0;
+	return correct_doubtful(ex, c) || c->measured;
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
