@@ -279,7 +279,7 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		  (whole ? 1 : (end - begin) / r->par.period);
 	if (watched >= r->par.alarm)
 		h->alarm = 1;
-	else if (whole && !value[UNKNOWN] && watched < r->par.clear)
+	else if (whole && value[UNKNOWN] == 0 && watched < r->par.clear)
 		h->alarm = 0;
 	if (r->par.output == REPORT_TREND && !whole)
 		return;
