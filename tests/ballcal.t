@@ -26,6 +26,21 @@ duet --pulse sine --gain 1 --detectable seen.tsv 100.au >100.tsv 2>err
 near "the smallest size is the one that duet detects" "$(ballcal --balls 60.tsv:60um --balls 100.tsv:100um \
 	--balls 160.tsv:160um --pulse-duration 10ms --false-alarms 1e-5Hz | awk '$1 == "d50" { print $2 * 1e6 }')" \
 	"$(awk -F '\t' '/^[0-9]/ { if ($3 >= 0.5) { print 1e6 * (d + (0.5 - p) / ($3 - p) * ($1 - d)); exit } d = $1; p = $3 }' seen.tsv)" 0.3
+# Pairs within 40 ms: every other pulse overlaps, some with 30 times the error of one alone.
+for d in 60 100; do
+	sensorsim --uniform ${d}um:${d}um --number 40 --burst 2 --span 40ms --period 100ms --noise 5mV --seed $d |
+		duet --pulse sine --gain 1 >pairs$d.tsv 2>err
+done
+smallest() {
+	ballcal --balls "${1}60.tsv:60um" --balls "${1}100.tsv:100um" --pulse-duration 10ms 2>err |
+		awk '$1 == "d50" { print $2 * 1e6 }'
+}
+near "the smallest size is that of single balls where some pulses overlap" "$(smallest pairs)" "$(smallest '')" 0.1
+for d in 60 100; do
+	sed '/^#/d; s/alone$/overlap/' pairs$d.tsv >crowd$d.tsv
+done
+fails "no pulse tells the noise" 1 'no pulse stands alone.*want --noise' \
+	ballcal --balls crowd60.tsv:60um --balls crowd100.tsv:100um --pulse-duration 10ms
 sensorsim --uniform 100um:100um --number 40 --burst 1 --span 1ms --period 100ms --noise 5mV --seed 100 --phase 180deg |
 	duet --pulse sine --gain 1 >negative.tsv
 ballcal --balls 100.tsv:100um | sed '/^#/d' >right.out

@@ -251,4 +251,14 @@ for output in classes trend; do
 	echo $?
 done >status
 is "an incomplete last period raises the alarm of either output" "$(tr '\n' ' ' <status)" "4 4 "
+# 2160 per hour, a section that may hold any number, then 360
+awk 'BEGIN { print "time1\tdiameter\tverdict\tsources"; for (i = 1; i < 7; i++) print i "\t1e-4\talone\t1"
+	print "15\tnan\tunresolved\t1\n25\t1e-4\talone\t1\n35\t1e-4\talone\t1" }' >veiled.tsv
+debriscount --period 10s --duration 40s --alarm 1800:1000 veiled.tsv >out 2>err
+is "a period whose count has no upper limit does not clear an alarm" "$? $(column alarm out | tr '\n' ' ')" "0 1 1 0 0 "
+debriscount -o trend --window 3 --period 10s --duration 50s --alarm 1800:1000 veiled.tsv >out 2>err
+is "and gives no limits to a slope" "$(column slope_high out | awk '{ printf "%s ", $1 ~ /inf|nan/ ? $1 : "finite" }')" \
+	"nan nan inf inf finite "
+sed '/^25/,$d' veiled.tsv | debriscount --period 10s --duration 20s --alarm 1800:1000 >out 2>err
+is "an alarm is active at the end of a record whose last count is not known" $? 4
 done_testing

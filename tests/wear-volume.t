@@ -12,6 +12,7 @@ spheres() {
 		'4.5 1e-3 0 unresolved' '4.5 1e-3 1 alone' '5.5 1e-3 1 alone' | tr ' ' '\t'
 } >crowd.tsv
 wear-volume --stats stats crowd.tsv >volume.tsv 2>err
+is 'a volume that lacks that of a row is marked' "$?" 3
 is 'an unresolved row counts as its sources' "$(spheres volume.tsv)" "1.000000 2.000000 42.000000 42.000000 43.000000 "
 is 'a row without a diameter is reported' "$(head -n 1 err)" \
 	"wear-volume: crowd.tsv: rows ignored because they have no diameter: 1"

@@ -330,12 +330,12 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	start -= floor(start);
 	turn_rows(f, cell, r->cells);
 	at = place_of(0, start, n, m);
-	before = -1 - at;
+	before = place_of(m - 1, start, n, m) - n;
 	for (size_t i = 0; i < m; i++, before = at, at = after) {
 		struct loss loss = loss_below(f, f->node[cell[(size_t)at]]);
 		double bend, weight;
 
-		after = i + 1 < m ? place_of(i + 1, start, n, m) : 2 * n - 1 - at;
+		after = place_of(i + 1, start, n, m);
 		weight = (after - before) / 2;
 		check(f, f->node[cell[(size_t)at]], loss, weight);
 		depth[2] = depth[1];
@@ -349,8 +349,9 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	}
 	r->volume = r->area * sum / n;
 	r->change = r->area * change / n;
-	/* By the trapezoidal rule over the order of the rows, with mirrored ends, a cell
-	 * left out has the mean depth of its neighbours in the sample: second differences
+	/* By the trapezoidal rule over the order of the rows, closed to a ring, a cell
+	 * left out has the mean depth of its neighbours in the sample.  Rows at both ends
+	 * are shallow: mirrored ends weigh them less than others.  Second differences
 	 * tell the error even where steps of one and two cells alternate.  Those of
 	 * independent depths are six times their variance. */
 	if (m < r->cells) {

@@ -145,12 +145,17 @@ struct influence influence_rough_element(
 	return element(p, x, y, z, ROUGH_CROWD);
 }
 
-/* 1 - w: 0 with seven derivatives at the centre (in r), 1 with three at the edge. */
+/* 1 - w: the incomplete beta function I_u(7/2, 5), u = r^2, 0 with six derivatives at the
+ * centre (in r), 1 with four at the edge.  Of I_u(a, b) with a from 2 to 5 and b from 3
+ * to 8 it leaves the least error below 30 contacts of 180 x 180 cells. */
 static double outside(double x, double y, double rx, double ry)
 {
-	double u = x * x / (rx * rx) + y * y / (ry * ry), u2 = u * u;
+	double u = x * x / (rx * rx) + y * y / (ry * ry), v = 1 - u;
 
-	return u < 1 ? u2 * u2 * (35 - 84 * u + 70 * u2 - 20 * u2 * u) : 1;
+	return u < 1 ? u * u * u * sqrt(u) *
+			       (1 + v * (3.5 + v * (7.875 + v * (14.4375 +
+									v * 23.4609375))))
+		     : 1;
 }
 
 static void add_outer(const struct influence_par *p, double x, double y, double z,

@@ -61,7 +61,9 @@ struct pulses {
 	int equal;        /* tables of pulses that do not differ */
 	int doubted;      /* a table is, by its own account */
 	double outlier_p; /* the least of the tables; nan: none has three pulses */
-	double squares;   /* sum of the squared standard errors of the amplitudes */
+	/* Squared standard errors of the amplitudes of pulses that stand alone, whose
+	 * fit is the matched filter: their sum and number. */
+	double squares, alone;
 };
 
 /* Reads "FILE:DIAMETER"; fresh memory. */
@@ -156,8 +158,10 @@ static void read_balls(struct pulses *p, const char *text, int table)
 			die(EXIT_RUN, "out of memory");
 		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v), table };
 		p->speed += v;
-		if (ce >= 0)
+		if (ce >= 0 && (cw < 0 || strcmp(table_text(t, cw), "alone") == 0)) {
 			p->squares += pow(table_positive(t, ce), 2);
+			p->alone++;
+		}
 	}
 	if (p->n == before)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
@@ -269,6 +273,10 @@ int main(int argc, char **argv)
 	if (p.n < 3)
 		die(EXIT_RUN, "want at least 3 pulses to estimate their scatter, got %zu",
 			p.n);
+	if (isnan(noise) && !isnan(duration) && p.alone == 0)
+		die(EXIT_RUN,
+			"no pulse stands alone: the amplitudes of others have larger "
+			"errors than the noise: want --noise");
 	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
 	x = xcalloc(p.n, sizeof *x);
 	y = xcalloc(p.n, sizeof *y);
@@ -325,7 +333,7 @@ int main(int argc, char **argv)
 	}
 	put(t, "outlier_p", "1", p.outlier_p, NAN, NAN);
 	if (isnan(noise))
-		noise = sqrt(p.squares / (double)p.n);
+		noise = sqrt(p.squares / p.alone);
 	if (!isnan(duration))
 		put_smallest(t, ln_k, doubt.constant,
 			isnan(velocity) ? p.speed / (double)p.n : velocity);

@@ -207,6 +207,10 @@ static void put_trend(struct report *r, const struct rate_history *h, const char
 {
 	size_t n = window && h->n > (size_t)window ? (size_t)window : h->n;
 
+	int unknown = 0;
+
+	for (size_t i = h->n - n; i < h->n; i++)
+		unknown |= h->column[UNKNOWN][i] != 0;
 	begin_row(r, group, begin, end);
 	for (int q = 0; q < 2; q++) {
 		double slope = NAN, half = NAN;
@@ -216,8 +220,10 @@ static void put_trend(struct report *r, const struct rate_history *h, const char
 			    n, r->par.classes.confidence, &l) == 0 &&
 			!isnan(l.slope)) {
 			slope = l.slope;
-			half = line_slope_half(&l, least_scatter(h, q, n, possible[q]),
-				r->par.classes.confidence);
+			half = unknown ? INFINITY
+				       : line_slope_half(&l,
+						 least_scatter(h, q, n, possible[q]),
+						 r->par.classes.confidence);
 		}
 		table_put(r->table, h->column[RATE + q][h->n - 1]);
 		table_put(r->table, slope);
@@ -258,6 +264,7 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 	struct class_count all;
 
 	classes_count_above(c, 0, &all);
+	value[UNKNOWN] = isinf(all.number.high);
 	for (int q = 0; q < 2; q++) {
 		const struct counted *sum = q ? &all.volume : &all.number;
 		double scale = q ? r->par.density * per_hour : per_hour;
@@ -272,7 +279,7 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		  (whole ? 1 : (end - begin) / r->par.period);
 	if (watched >= r->par.alarm)
 		h->alarm = 1;
-	else if (whole && watched < r->par.clear)
+	else if (whole && value[UNKNOWN] == 0 && watched < r->par.clear)
 		h->alarm = 0;
 	if (r->par.output == REPORT_TREND && !whole)
 		return;

@@ -28,8 +28,16 @@ struct report_par {
 };
 
 /* Columns of a history: middle of each period, h; particles and kg per hour; the sums of
- * the squares of what each particle adds to them, and the largest of these. */
-enum { TIME, RATE, SQUARES = RATE + 2, LARGEST = SQUARES + 2, HISTORY = LARGEST + 2 };
+ * the squares of what each particle adds to them, and the largest of these; 1 if the
+ * number has no upper limit. */
+enum {
+	TIME,
+	RATE,
+	SQUARES = RATE + 2,
+	LARGEST = SQUARES + 2,
+	UNKNOWN = LARGEST + 2,
+	HISTORY
+};
 
 /* What is remembered of the periods of one group. */
 struct rate_history {

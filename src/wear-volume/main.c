@@ -95,7 +95,8 @@ static void put_until(struct table_out *out, double time, double volume, long lo
 		table_flush(out);
 }
 
-static void sum_rows(struct table_in *t, struct table_out *out)
+/* Returns how many rows have no diameter. */
+static long sum_rows(struct table_in *t, struct table_out *out)
 {
 	struct columns c = find_columns(t);
 	double before = -INFINITY, volume = 0;
@@ -130,6 +131,7 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 	if (without > 0)
 		warn("%s: rows ignored because they have no diameter: %ld", table_name(t),
 			without);
+	return without;
 }
 
 int main(int argc, char **argv)
@@ -146,9 +148,9 @@ int main(int argc, char **argv)
 	out = table_create(NULL, cmd, "s m3", "t y");
 	if (start)
 		table_comment(out, "start", "%s", start);
-	sum_rows(t, out);
+	doubtful = sum_rows(t, out) > 0;
 	verdict_report();
-	doubtful = verdict_equivalent() | verdict_doubted(t);
+	doubtful |= verdict_equivalent() | verdict_doubted(t);
 	table_close(t);
 	table_done(out);
 	free(cmd);
