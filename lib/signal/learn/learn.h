@@ -23,6 +23,9 @@ enum num_status learn_duration(int pulse, double low, double *duration);
 enum num_status learn_set_shape(struct calibration *c, int pulse);
 /* 1 if the pulse describes its record, by CALIBRATE_DESCRIBES. */
 int learn_describes(const struct calibration *c);
+/* 1 if it does, and does not replace several: a shape corrected until no example is one
+ * pulse may be another one's half, or a group of them. */
+int learn_stands(const struct calibration *c);
 /* Flags of the samples, aligned, that are not known; NULL if the record was whitened,
  * which spreads them. */
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
