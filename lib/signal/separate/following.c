@@ -5,8 +5,8 @@
 
 /* Largest amount by which a delay may fall short of the transit time, as a share of it:
  * no particle of laminar flow is faster than twice the mean.  In eight laminar records
- * 0.3, 0.5 and 0.7 find 188, 189 and 139 of 400 particles.  Of a wide range that was learned, it is
- * the least delay. */
+ * 0.3, 0.5 and 0.7 find 188, 189 and 139 of 400 particles.  Of a wide range that was
+ * learned, it is the least delay. */
 static const double LEAST = 0.5;
 
 int separate_is_range_free(const struct separate *s)
