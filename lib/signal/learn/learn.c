@@ -515,7 +515,7 @@ static enum separate_status settle(
 /* 1 if the shape is to be corrected by all pulses.  One given by the caller is kept,
  * except for the effect of an estimated filter; explanations of a colour are compared by
  * how well uncorrected known pulses fit.  One taken from a whitened record has the noise
- * of the few events that it is the mean of: with its correction 795 particles of 892 are
+ * of the few events that it is the mean of: with its correction 792 particles of 892 are
  * found and 5 rows are wrong in 23 records of coloured noise, 667 and 50 without it. */
 static int wants_correction(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
