@@ -395,8 +395,10 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	enum separate_status status = SEPARATE_HARD;
 
 	memset(c, 0, sizeof *c);
-	if (isnan(par->lag) && isnan(par->spread) && isnan(par->duration) &&
-		velocities_find(x1, x2, n, &v) != NUM_OK)
+	/* A filter that is to be undone has given the pulses lobes, which look like
+	 * slower pulses. */
+	if (!par->filter && isnan(par->lag) && isnan(par->spread) &&
+		isnan(par->duration) && velocities_find(x1, x2, n, &v) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (v.slow * (1 - CALIBRATE_WIDE) > v.fast * (1 + CALIBRATE_WIDE))
 		status = try_velocities(&look, &v, c);
