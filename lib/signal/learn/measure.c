@@ -24,11 +24,6 @@ static const double BAD_FIT = 2;
  * like that of a line. */
 static const double NARROW = 0.5;
 
-/* Least transit time, in durations of a pulse.  Events that reach both channels together
- * were found at most 0.015 apart in eight records of shocks; coils as near as 5 cm, with
- * pulses of 7.7 ms at 12.7 m/s, are 0.4 apart. */
-static const double APART = 0.1;
-
 /* Share of its energy in which a pulse may differ from one of sensor.h and still be
  * corrected, rather than taken from the record.  In the records above 0.001 gives the
  * same rows, 0.01 17 more wrong ones. */
@@ -600,7 +595,7 @@ static enum separate_status find_duration(const struct calibrate_par *par,
 		return SEPARATE_MEMORY;
 	if (!(c->duration >= SHAPE_SHORTEST))
 		return SEPARATE_FAST;
-	if (isnan(par->lag) && (double)c->shift < APART * c->duration)
+	if (isnan(par->lag) && (double)c->shift < CALIBRATE_APART * c->duration)
 		return SEPARATE_AT_ONCE;
 	return c->duration > 0.5 * length ? SEPARATE_SLOW : SEPARATE_OK;
 }

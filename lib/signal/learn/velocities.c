@@ -1,6 +1,8 @@
 /* velocities.c - see velocities.h */
 #include "signal/learn/velocities.h"
+#include "num/dot.h"
 #include "num/sigmas.h"
+#include "signal/learn/calibration.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -14,12 +16,9 @@ enum { POINTS = 24, MOST = 512, PAIRS = 6 };
  * most, and the mean of both is known to half a step; noise needs a little more. */
 static const double STEP = 0.115, SAME = 0.15, PEAK = 0.06;
 
-/* Shortest pulse, samples, and longest, as a share of the record: there are more than
- * three times as many as pairs are needed. */
-static const double SHORTEST = 8, LONGEST = 0.05;
-
-/* Least transit time, in durations; see APART in measure.c. */
-static const double APART = 0.1;
+/* Longest pulse, as a share of the record: there are more than three times as many as
+ * pairs are needed. */
+static const double LONGEST = 0.05;
 
 /* Largest distance, in durations of the longer one, of what is within a larger pulse: its
  * lobes look like pulses at half a duration from it. */
@@ -58,13 +57,8 @@ static void filter(const double *z, size_t m, int points, double *out)
 		p[k] = scale * sin(2 * M_PI * (k + 0.5) / points);
 	for (size_t i = 0; i < m; i++)
 		out[i] = 0;
-	for (size_t i = 0; i + (size_t)points <= m; i++) {
-		double sum = 0;
-
-		for (int k = 0; k < points; k++)
-			sum += p[k] * z[i + (size_t)k];
-		out[i + (size_t)points / 2] = sum;
-	}
+	for (size_t i = 0; i + (size_t)points <= m; i++)
+		out[i + (size_t)points / 2] = dot(p, z + i, (size_t)points);
 }
 
 static int by_value(const void *a, const void *b)
@@ -85,7 +79,7 @@ static enum num_status find_marks(
 
 	if (!(noise > 0))
 		return NUM_OK;
-	for (double T = SHORTEST; T < LONGEST * (double)n; T *= exp(STEP)) {
+	for (double T = SHAPE_SHORTEST; T < LONGEST * (double)n; T *= exp(STEP)) {
 		size_t q = T > 2 * POINTS ? (size_t)(T / POINTS) : 1, count = n / q;
 		int points = (int)(T / (double)q + 0.5);
 
@@ -191,7 +185,7 @@ static enum num_status pair_up(const struct marks m[2], size_t n, struct velocit
 			if (a->value * b->value < 0 || fabs(log(a->T / b->T)) > SAME)
 				continue;
 			chance += T / (double)n;
-			if (b->t - a->t > APART * T)
+			if (b->t - a->t > CALIBRATE_APART * T)
 				pair[pairs++] =
 					(struct pair){ log((b->t - a->t) / T), T };
 		}
