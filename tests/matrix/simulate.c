@@ -712,7 +712,8 @@ static void note_masked(struct event *e, long N, const unsigned char *masked)
 static void make_slopes(struct event *e)
 {
 	double tau = e->time[1] - e->time[0], h = 1e-3 * e->duration,
-	       sigma = noise_at(e->time[0]) * hypot(1, get("behind")),
+	       sigma = hypot(noise_at(e->time[0]) * hypot(1, get("behind")),
+		       get("step") / sqrt(12)),
 	       rho = get("common");
 	long last;
 	size_t n;

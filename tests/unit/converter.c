@@ -89,6 +89,30 @@ static void test_blurred(void)
 			"sines of unlike size in steps of %g V have no limit", steps[k]);
 }
 
+/* Pulses of 20 V, each before 2100 samples of noise of a fifth of the step. */
+static void test_quiet(void)
+{
+	static unsigned char hidden[N];
+	struct converter c;
+	int right = 0;
+
+	draw(0, 31);
+	for (int i = 0; i < N; i++) {
+		double slow = 2 * sin(2 * M_PI * i / 700);
+
+		x[i] = 0.5 * round((x[i] + (i % 2800 < 700 ? 9 * slow : -slow)) / 0.5);
+	}
+	hide(&c, hidden);
+	ok(!memchr(hidden + 2800, 1, N - 2800),
+		"after a pulse, a coarse converter may stand at the value without pulses");
+	for (int i = 5000; i < 6500; i++)
+		x[i] = 10;
+	hide(&c, hidden);
+	for (int i = 5000; i < 6500; i++)
+		right += hidden[i];
+	ok(right == 1500, "a dropout at another value is hidden");
+}
+
 int main(void)
 {
 	static const double steps[] = { 0, 1e-4, 0.01, 0.05, 0.2 };
@@ -127,5 +151,6 @@ int main(void)
 			steps[k]);
 	}
 	test_blurred();
+	test_quiet();
 	return tap_done();
 }

@@ -124,6 +124,21 @@ int converter_find_blurred(struct converter *c, const double *x, double sign,
 	return c->blurred[0] || c->blurred[1];
 }
 
+/* Takes in x, which follows c->last: votes for the usual value, and counts the run that
+ * has ended if it was measured and had that value. */
+static void watch_usual(struct converter *c, double x)
+{
+	if (c->run > 0 && x != c->last && c->last == c->usual && !c->stands) {
+		c->usual_samples += (double)c->run;
+		c->usual_repeats += (double)(c->run - 1);
+	}
+	if (c->lead == 0 && x != c->usual) {
+		c->usual = x;
+		c->usual_samples = c->usual_repeats = 0;
+	}
+	c->lead += x == c->usual ? 1 : -1;
+}
+
 size_t converter_next(struct converter *c, double *sample)
 {
 	double share = (c->repeats + 1) / (c->samples + 2), x = *sample;
@@ -132,7 +147,10 @@ size_t converter_next(struct converter *c, double *sample)
 		*sample = c->last;
 		return 1;
 	}
+	watch_usual(c, x);
 	c->run = c->samples > 0 && x == c->last ? c->run + 1 : 1;
+	if (x == c->usual && c->usual_samples > 0)
+		share = fmax(share, (c->usual_repeats + 1) / (c->usual_samples + 2));
 	c->last = x;
 	c->samples++;
 	see(&c->limit[0], x);

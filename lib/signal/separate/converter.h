@@ -3,7 +3,8 @@
  * A limit shows as an extreme value that comes back more often than the next one, or, if
  * noise was added behind it, as extreme values that crowd; a dropout as a run of equal
  * values longer than those of the rest of the record make likely.  A zeroed converter has
- * seen nothing.
+ * seen nothing.  At its usual value, that without pulses, a coarse converter stands
+ * longer than elsewhere.
  */
 #ifndef SIGNAL_CONVERTER_H
 #define SIGNAL_CONVERTER_H
@@ -20,6 +21,10 @@ struct converter {
 	int blurred[2];                  /* 1: a limit with noise behind it is known */
 	double from[2];                  /* it begins here; sign as above */
 	double last, samples, repeats;
+	/* The value that most samples have, if more than half of them have one; by how
+	 * many it leads (Boyer and Moore, 1991), and those of its runs that have ended.
+	 */
+	double usual, lead, usual_samples, usual_repeats;
 	size_t run; /* samples up to the last one that are equal */
 	int stands; /* 1: too many to have been measured */
 };
