@@ -103,7 +103,7 @@ void classes_add_stretch(struct classes *c, const struct stretch *s)
 {
 	int k = class_of(c, s->diameter);
 
-	if (k >= 0 && s->number >= 0) {
+	if (k >= 0 && s->number >= 0 && s->diameter > 0) {
 		c->class[k].unresolved += s->number;
 		c->class[k].unresolved_volume += s->number * ball(c, s->diameter);
 	}
