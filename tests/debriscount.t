@@ -45,12 +45,24 @@ is "with --duration the last period is written too" "$(column rows periods.tsv |
 printf 'time1\tdiameter\tverdict\tsources\n1\t60e-6\talone\t1\n5\t100e-6\tunresolved\t40\n' >dense.tsv
 debriscount --duration 10s --classes 50um,90um,125um dense.tsv >dense.out 2>err
 is "an unresolved section counts as equal particles in their class" "$(column unresolved dense.out | tr '\n' ' ')" "0 40 0 "
-# 3.69 + 40 (100/125)^12
-near "an unresolved section bounds the number of larger particles" "$(cell number_high dense.out 3)" 6.43766 1e-4
+# 3.69 + 2, as 40 (100/125)^12 is 2.7
+near "an unresolved section bounds the number of larger particles" "$(cell number_high dense.out 3)" 5.68888 1e-4
 is "unresolved sections are reported" "$(grep -c 'not resolved' err)" 1
 printf 'time1\tdiameter\tverdict\tsources\n5\tnan\tunresolved\t40\n' >dense.tsv
 debriscount --duration 10s dense.tsv >dense.out 2>err
 is "an unresolved section without diameter has no upper limit" "$(cell number_high dense.out)" inf
+# (150/90)^6 is 21.4 and (150/125)^6 is 2.99; 60 um are at most those of 1 + 3 3 10/60 times
+# the amplitude, 81.4 um: 21.4 (81.4/90)^6 is 11.7 and 2.99 (81.4/125)^6 is 0.23
+for row in 'nan nan' '60e-6 10e-6'; do
+	printf 'time1\tdiameter\tdiameter_se\tverdict\tsources\tdiameter_most\n5\t%s\tunresolved\t1\t150e-6\n' \
+		"$(echo "$row" | tr ' ' '\t')" >most.tsv
+	debriscount --duration 10s --classes 90um,125um,200um --density 7.8g/cm3 most.tsv >most.out 2>err
+	column number_high most.out | awk '{ printf "%.0f ", $1 + log(0.025) }'
+done >most
+is "the energy of a section bounds the number of particles of unknown size" "$(cat most)" "21 2 0 11 0 0 "
+# 11 with the energy of one of 150 um are no heavier than 11 equal ones; and 3.69 of 125 um
+near "and their mass" "$(cell kg_per_hour_high most.out 1)" \
+	"$(awk 'BEGIN { print atan2(0, -1) / 6 * (sqrt(11) * 150e-6 ^ 3 - log(0.025) * 125e-6 ^ 3) * 7800 * 360 }')" 1e-9
 
 printf 'time1\tdiameter\tmaterial\n1\t60e-6\tsteel\n2\t60e-6\tbronze\n3\t80e-6\tsteel\n' >two.tsv
 debriscount --by material --duration 10s two.tsv >by.tsv

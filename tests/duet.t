@@ -221,12 +221,17 @@ duet --sections sections.tsv tails.au >found.tsv 2>err
 is "short dense stretches: doubtful" $? 3
 awk -F '\t' '/^#/ { next } $1 == "section" || $1 == "particle" && $2 == "time1" { file++; for (i = 1; i <= NF; i++) c[$i] = i; next }
 	file == 1 && $c["verdict"] == "unresolved" { from[$c["section"]] = $c["begin"]; to[$c["section"]] = $c["end"] }
-	file == 2 { if ($c["kind"] == "particle") { time[n] = $c["time1"]; a[n++] = $c["amplitude"] } }
-	file == 3 && $c["verdict"] == "unresolved" { k = $c["section"]; sources = volume = 0; rows++
+	file == 2 { if ($c["kind"] == "particle") { time[n] = $c["time1"]; d[n] = $c["diameter"]; a[n++] = $c["amplitude"] } }
+	file == 3 && $c["verdict"] == "unresolved" { k = $c["section"]; sources = volume = sixth = 0; rows++
 		for (i = 0; i < n; i++) if (time[i] >= from[k] && time[i] < to[k]) { sources++; volume += a[i] }
+		half = sqrt(3) * $c["time1_se"]
+		for (i = 0; i < n; i++) if (time[i] > $c["time1"] - half && time[i] < $c["time1"] + half) sixth += d[i] ^ 6
+		within += $c["diameter_most"] >= sixth ^ (1 / 6); factor += log($c["diameter_most"] / sixth ^ (1 / 6))
 		more += $c["sources"] > sources || ($c["amplitude"] != "nan" && $c["sources"] * $c["amplitude"] > volume) }
-	END { print (rows > 10), more + 0 }' sections.tsv truth.tsv found.tsv >more
-is "short dense stretches: number and volume are lower bounds" "$(cat more)" "1 0"
+	END { print (rows > 10), more + 0; print rows - within, exp(factor / rows) }' sections.tsv truth.tsv found.tsv >more
+is "short dense stretches: number and volume are lower bounds" "$(sed -n 1p more)" "1 0"
+is "short dense stretches: diameter_most bounds what is in them" "$(sed -n '2s/ .*//p' more)" 0
+at_most "short dense stretches: by no more than half of the diameter" "$(sed -n '2s/.* //p' more)" 1.5
 
 # Filtered records.  "filter" in the header is how bpfilter tells what a record has passed.
 passed() {

@@ -19,7 +19,7 @@ struct classes {
 		       */
 	double *most_volume; /* upper bound of their volume */
 	struct class *class;
-	int unknown; /* an unresolved section had no diameter */
+	int unknown; /* nothing bounds an unresolved section */
 };
 
 /* Volume of a particle of this diameter to the sensor. */
@@ -89,23 +89,35 @@ void classes_add(struct classes *c, double diameter, int sure)
 	}
 }
 
-void classes_add_stretch(struct classes *c, double number, double diameter)
+/* Most particles above an edge: by Markov's inequality, from the sums of d^6 and d^12. */
+static double most_above(const struct stretch *s, double edge)
 {
-	int k = class_of(c, diameter);
+	double largest = fmin(s->most, s->high > 0 ? s->high : INFINITY);
+	/* edges and diameters that were converted may differ by rounding */
+	double x = pow(s->most / edge, 6) * (1 + 1e-12);
 
-	if (!(number >= 0) || !(diameter > 0)) {
-		c->unknown = 1;
-		return;
-	}
-	if (k >= 0) {
-		c->class[k].unresolved += number;
-		c->class[k].unresolved_volume += number * ball(c, diameter);
-	}
-	for (k = 0; k < c->n; k++) {
-		double x = pow(diameter / c->edge[k], 3), edge = ball(c, c->edge[k]);
+	return edge > 0 ? floor(x * fmin(1, pow(largest / edge, 6))) : INFINITY;
+}
 
-		c->most[k] += number * fmin(x * x, x * x * x * x);
-		c->most_volume[k] += edge > 0 ? number * x * (edge * x) : INFINITY;
+void classes_add_stretch(struct classes *c, const struct stretch *s)
+{
+	int k = class_of(c, s->diameter);
+
+	if (k >= 0 && s->number >= 0 && s->diameter > 0) {
+		c->class[k].unresolved += s->number;
+		c->class[k].unresolved_volume += s->number * ball(c, s->diameter);
+	}
+	c->unknown |= !(s->most >= 0);
+	for (k = 0; k < c->n && s->most >= 0; k++) {
+		double most = most_above(s, c->edge[k]);
+
+		c->most[k] += most;
+		/* that of as many equal ones, as their volume is a concave function of
+		 * d^6 */
+		if (isinf(most))
+			c->most_volume[k] = INFINITY;
+		else if (most > 0)
+			c->most_volume[k] += most * ball(c, s->most / pow(most, 1. / 6));
 	}
 }
 

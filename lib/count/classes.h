@@ -2,9 +2,10 @@
  *
  * A detected particle has the weight 1 over its probability of detection; unresolved
  * sections are described by the number and diameter of equal particles with the same
- * sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
- * inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the section
- * are larger than d, and their volume is at most that of N (d_eq / d)^6 of size d.
+ * sums of d^6 and d^12 (of the second and fourth power of the pulses), and by bounds of
+ * these: the sum of d^6 is at most most^6, and that of d^12 at most most^6 high^6.  By
+ * Markov's inequality no more than (most / d)^6 min(1, (high / d)^6) particles of the
+ * section, a whole number, are larger than d.
  *
  *	struct classes *c = classes_new(edges, n, &par);
  *	classes_add(c, d, 1);
@@ -16,9 +17,16 @@
 
 #include "count/detection.h"
 
+/* An unresolved section; NAN: unknown. */
+struct stretch {
+	double number, diameter; /* of equal particles */
+	double most; /* that of one particle with the largest sum of d^6 possible */
+	double high; /* upper limit of diameter, or NAN: most */
+};
+
 /* Diameters and edges are those by which the sensor detects a particle; size() gives that
  * of the sphere that it is, where the two differ, as for non-ferrous particles.  Its cube
- * grows no faster than the sixth power of its argument. */
+ * is a concave function of the sixth power of its argument. */
 struct classes_par {
 	struct detection detection;
 	double confidence;
@@ -49,8 +57,7 @@ void classes_clear(struct classes *c);
 
 /* Adds a particle; doubtful ones count only for the upper limit. */
 void classes_add(struct classes *c, double diameter, int sure);
-/* Adds an unresolved section of equal particles; diameter NAN: unknown. */
-void classes_add_stretch(struct classes *c, double number, double diameter);
+void classes_add_stretch(struct classes *c, const struct stretch *s);
 
 /* Adds what may belong to c, too, such as particles of unknown material: it counts only
  * for the upper limit.  Both have the same classes. */

@@ -88,14 +88,13 @@ void groups_add(struct groups *g, const char *name, double diameter, int sure)
 		classes_add(group->non_ferrous, diameter, sure);
 }
 
-void groups_add_stretch(
-	struct groups *g, const char *name, double number, double diameter)
+void groups_add_stretch(struct groups *g, const char *name, const struct stretch *s)
 {
 	struct group *group = at(g, name);
 
-	classes_add_stretch(group->classes, number, diameter);
+	classes_add_stretch(group->classes, s);
 	if (group->non_ferrous)
-		classes_add_stretch(group->non_ferrous, number, diameter);
+		classes_add_stretch(group->non_ferrous, s);
 }
 
 void groups_report(struct groups *g, double begin, double end, int whole)

@@ -11,8 +11,7 @@ struct groups;
 struct groups *groups_new(const struct report_par *par);
 /* Adds a particle or an unresolved section to the group of this name, see classes.h. */
 void groups_add(struct groups *g, const char *name, double diameter, int sure);
-void groups_add_stretch(
-	struct groups *g, const char *name, double number, double diameter);
+void groups_add_stretch(struct groups *g, const char *name, const struct stretch *s);
 /* Prints the rows of a period of all groups, and begins the next. */
 void groups_report(struct groups *g, double begin, double end, int whole);
 /* End of the period that begins now; infinite without --period. */

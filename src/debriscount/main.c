@@ -9,6 +9,7 @@
 #include "groups.h"
 #include "io/quantities.h"
 #include "io/tables.h"
+#include "num/sigmas.h"
 #include "reports.h"
 #include <math.h>
 #include <stdlib.h>
@@ -156,6 +157,26 @@ static double or_nan(const struct table_in *t, int column,
 	return isnan(table_number(t, column)) ? NAN : valid(t, column);
 }
 
+struct stretch_columns {
+	int sources, diameter, diameter_se, most;
+};
+
+/* The unresolved section of the present row: its limits are three standard errors wide,
+ * as those of duet.  Without them the sums are taken to be exact. */
+static struct stretch stretch_of(
+	const struct table_in *t, const struct stretch_columns *c)
+{
+	double d = or_nan(t, c->diameter, table_diameter);
+	double number = or_nan(t, c->sources, table_positive);
+	double se = table_number(t, c->diameter_se);
+
+	if (c->most < 0)
+		return (struct stretch){ number, d, d * pow(number, 1. / 6), d };
+	/* the amplitude goes with the cube of the diameter */
+	return (struct stretch){ number, d, or_nan(t, c->most, table_diameter),
+		d * cbrt(1 + 3 * SIGMAS_SELDOM * se / d) };
+}
+
 /* Probability of detection below which a particle stands for more than a hundred. */
 static const double HARDLY = 0.01;
 
@@ -164,7 +185,10 @@ static double count_rows(
 	struct table_in *t, const struct detection *detection, struct groups *groups)
 {
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
-	int cv = verdict_column(t), cs = table_find(t, "sources");
+	int cv = verdict_column(t);
+	const struct stretch_columns columns = { table_find(t, "sources"), cd,
+		table_find_quantity(t, "diameter_se", UNIT_LENGTH),
+		table_find_quantity(t, "diameter_most", UNIT_LENGTH) };
 	/* That of the middle of an unresolved section tells its length. */
 	int ce = table_find_quantity(t, "time1_se", UNIT_TIME),
 	    cb = by ? table_need(t, by) : -1;
@@ -211,11 +235,11 @@ static double count_rows(
 		name = cb >= 0 ? table_text(t, cb) : "";
 		if (v == VERDICT_UNRESOLVED) {
 			double half = ce >= 0 ? sqrt(3) * table_number(t, ce) : 0;
+			const struct stretch stretch = stretch_of(t, &columns);
 
 			across += !isnan(period) &&
 				  (time - half < begin || time + half > end);
-			groups_add_stretch(groups, name, or_nan(t, cs, table_positive),
-				or_nan(t, cd, table_diameter));
+			groups_add_stretch(groups, name, &stretch);
 			continue;
 		}
 		diameter = table_diameter(t, cd);

@@ -11,9 +11,10 @@
 
 enum { SOURCES_SHOWN = 8 };
 
-#define COLUMNS                                                                     \
-	"particle time1 time2 diameter amplitude delay velocity time1_se time2_se " \
-	"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict"
+#define COLUMNS                                                                       \
+	"particle time1 time2 diameter amplitude delay velocity time1_se time2_se "   \
+	"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict " \
+	"diameter_most"
 
 static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved",
 	"shock", "bubble", "impulse", "transient" };
@@ -35,8 +36,8 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 
 	out->rate = format->rate;
 	out->particles = table_create(NULL, cmd,
-		out->components ? "1 s s m V s m/s s s m V s m/s 1 1 1 1 rad rad 1 1"
-				: "1 s s m V s m/s s s m V s m/s 1 1 1 1",
+		out->components ? "1 s s m V s m/s s s m V s m/s 1 1 1 1 m rad rad 1 1"
+				: "1 s s m V s m/s s s m V s m/s 1 1 1 1 m",
 		out->components ? COLUMNS " phase phase_se ferrous class" : COLUMNS);
 	if (format->seed)
 		table_comment(out->particles, "seed", "%s", format->seed);
@@ -108,6 +109,7 @@ void found_particle(struct found *out, const struct transit *found)
 		(double)p->section, (double)p->sources, p->chi2 };
 
 	put_row(out->particles, row, 16, verdicts[p->verdict]);
+	table_put(out->particles, s.most);
 	if (out->components)
 		put_class(out, p, s.diameter);
 	table_end_row(out->particles);
@@ -123,6 +125,7 @@ void found_peak(struct found *out, const struct peak *p, int sensor, double dela
 		p->height, delay, v, NAN, NAN, NAN, NAN, NAN, NAN, NAN, 1, NAN };
 
 	put_row(out->particles, row, 16, "counted");
+	table_put(out->particles, NAN);
 	table_end_row(out->particles);
 }
 

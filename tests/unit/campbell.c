@@ -140,6 +140,58 @@ static void test_bands(enum pulse_shape pulse)
 	shape_free(shape);
 }
 
+/* Adds pulses of height a[i] at t[i] to the noise of a short section. */
+static double add_few(const struct shape *shape, uint32_t realisation, const double *t,
+	const double *a, int m, double *y, int n)
+{
+	double p[4000], z[2], sum = 0;
+
+	for (int i = 0; i < n; i++) {
+		philox_normal2(5, realisation, RNG_NOISE, (uint64_t)i, z);
+		y[i] = z[0];
+	}
+	for (int k = 0; k < m; k++) {
+		shape_sample(shape, t[k], 100, 0, (size_t)n, p, NULL, NULL);
+		for (int i = 0; i < n; i++)
+			y[i] += a[k] * p[i];
+		sum += a[k] * a[k];
+	}
+	return sum;
+}
+
+static void test_most(enum pulse_shape pulse)
+{
+	enum { SECTION = 800, RUNS = 400 };
+	struct shape *shape = shape_new(pulse);
+	const double half[] = { 350, 400 }, same[] = { 30, 30 };
+	double y[SECTION], sum, held = 0, factor = 0;
+
+	for (uint32_t run = 0; run < RUNS; run++) {
+		double t[4], a[4], u, most;
+		int m = 1 + (int)(run % 4);
+
+		for (int k = 0; k < m; k++) {
+			u = philox_uniform(6, run, RNG_PARTICLE, 2 * (uint64_t)k);
+			t[k] = 200 + 400 * u;
+			u = philox_uniform(6, run, RNG_PARTICLE, 2 * (uint64_t)k + 1);
+			a[k] = 5 + 25 * u;
+		}
+		sum = add_few(shape, run, t, a, m, y, SECTION);
+		most = campbell_most(y, SECTION, shape, 100);
+		held += most >= sum;
+		factor += log(most / sum) / RUNS;
+	}
+	ok(held >= 0.95 * RUNS, "the energy bounds the squares of few pulses: %.0f of %d",
+		held, RUNS);
+	ok(factor < log(3), "and is within a factor of 3 of them: %.2f", exp(factor));
+	sum = add_few(shape, 0, half, same, 2, y, SECTION);
+	ok(campbell_most(y, SECTION, shape, 100) > sum,
+		"also of two that take away the most of each other");
+	memset(y, 0, sizeof y);
+	ok(campbell_most(y, SECTION, shape, 100) < 0, "less than noise is no bound");
+	shape_free(shape);
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -169,6 +221,9 @@ int main(void)
 	test_bands(PULSE_SINE);
 	test_bands(PULSE_GAUSS);
 	test_bands(PULSE_LORENTZ);
+	test_most(PULSE_SINE);
+	test_most(PULSE_GAUSS);
+	test_most(PULSE_LORENTZ);
 	free(y1);
 	free(y2);
 	shape_free(shape);

@@ -262,7 +262,10 @@ static void check_stretches(double (*size)(double))
 				}
 		}
 		classes_clear(c);
-		classes_add_stretch(c, s6 * s6 / s12, pow(s12 / s6, 1.0 / 6));
+		const struct stretch s = { s6 * s6 / s12, pow(s12 / s6, 1.0 / 6),
+			pow(s6, 1.0 / 6), pow(s12 / s6, 1.0 / 6) };
+
+		classes_add_stretch(c, &s);
 		for (int k = 0; k < 4; k++) {
 			struct class_count out;
 
@@ -275,12 +278,28 @@ static void check_stretches(double (*size)(double))
 	ok(close > 500, "the bound is within a factor of 4 in %d of 2000 sections",
 		close);
 	classes_clear(c);
-	classes_add_stretch(c, 10, NAN);
+	/* (130 / 60)^6 is 103, (130 / 100)^6 is 4.8 */
+	classes_add_stretch(c, &(const struct stretch){ 1, NAN, 130e-6, NAN });
+	{
+		struct class_count one, larger, largest;
+		double none = -log(0.025);
+
+		classes_count(c, 1, &one);
+		classes_count(c, 2, &larger);
+		classes_count(c, 3, &largest);
+		ok(one.unresolved + largest.unresolved == 0 && largest.volume.value == 0,
+			"a section that may hold nothing counts as none");
+		near(one.number.high, 103 + none, 1e-9,
+			"and its energy bounds the number of particles,");
+		near(larger.number.high, 4 + none, 1e-9, "which is a whole one,");
+		near(largest.number.high, none, 1e-9, "and 0 above that size");
+	}
+	classes_add_stretch(c, &(const struct stretch){ 10, NAN, NAN, NAN });
 	{
 		struct class_count out;
 
 		classes_count(c, 1, &out);
-		ok(isinf(out.number.high), "a section without estimate has no bound");
+		ok(isinf(out.number.high), "a section without energy has no bound");
 	}
 	classes_free(c);
 }

@@ -2,6 +2,7 @@
 #include "signal/detect/campbell.h"
 #include "num/dot.h"
 #include "num/periodogram.h"
+#include "num/sigmas.h"
 #include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
@@ -249,6 +250,35 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	c->fourth_se = hypot(c->fourth_se, 2 * c->unlike * c->fourth);
 	c->rate_se = hypot(c->rate_se, c->unlike * c->rate);
 	c->amplitude_se = hypot(c->amplitude_se, 0.5 * c->unlike * c->amplitude);
+}
+
+/* How far the correlation of the pulse with itself falls below 0 at any lag. */
+static double opposition(const struct shape *shape)
+{
+	enum { STEPS = 32 };
+	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
+	double *p = calloc((size_t)points, sizeof *p), energy, least = 0;
+
+	if (!p)
+		return 1;
+	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
+	energy = dot(p, p, (size_t)points);
+	for (int lag = 1; lag < points; lag++)
+		least = fmin(least, dot(p, p + lag, (size_t)(points - lag)) / energy);
+	free(p);
+	return -least;
+}
+
+double campbell_most(
+	const double *y, size_t n, const struct shape *shape, double duration)
+{
+	double square = dot(y, y, n), noise = (double)n;
+	double energy = fmax(square - noise, 0);
+	/* of the noise, and of its product with what is in it */
+	double error = sqrt(2 * noise + 4 * energy);
+
+	return (square - noise + SIGMAS_SELDOM * error) /
+	       ((1 - opposition(shape)) * duration * shape_energy(shape));
 }
 
 void campbell_scale(struct campbell *c, double unit, double rate)

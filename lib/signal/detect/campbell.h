@@ -43,6 +43,15 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 
+/* Upper limit of the sum of a^2 of the pulses in y[0 .. n), in units of its noise,
+ * however few they are and whatever else is there: the energy of the samples and three
+ * standard errors.  Of that of two pulses of one sign, 1 - c is left where they overlap
+ * the worst, c the least correlation of the pulse with itself; more of them, and what is
+ * no pulse, take away more only by a rare chance.  Below 0 where the noise is less than
+ * it should be. */
+double campbell_most(
+	const double *y, size_t n, const struct shape *shape, double duration);
+
 /* The same for amplitudes and rates in other units. */
 void campbell_scale(struct campbell *c, double unit, double rate);
 

@@ -18,7 +18,8 @@ struct entry *separate_queue_entry(struct separate *s)
 						     .correlation = NAN,
 						     .phase = NAN,
 						     .phase_se = NAN,
-						     .chi2 = NAN } };
+						     .chi2 = NAN,
+						     .most = NAN } };
 	return &s->queue[s->count++];
 }
 

@@ -106,6 +106,36 @@ static enum separate_status draw_pulses(
 	return SEPARATE_OK;
 }
 
+/* Upper limit of the sum of the squared amplitudes in n samples, in units of the noise,
+ * of particles of the mean velocity; NAN where neither sensor has measured all samples.
+ * Slower ones have longer pulses and less amplitude: for their size they have less
+ * energy, in proportion to velocity. */
+static double most_square(
+	const struct separate *s, long long from, size_t n, const struct campbell *dense)
+{
+	double slowest = 1 + s->scene.delta_max / (double)s->cal.shift, sum = 0;
+	double high = (double)n * (dense->square + SIGMAS_SELDOM * dense->square_se);
+
+	for (int k = 0; k < s->channels; k += 2) {
+		double part = NAN; /* of the sensor with more */
+
+		for (int c = k; c < k + 2; c++) {
+			const struct buffer *b = &s->buffer[c];
+			long long at = from + (c > k ? s->cal.shift : 0) - b->begin;
+			double unit = (k ? s->quadrature.noise[c - k] : 1) /
+				      (c > k ? s->scene.gain : 1);
+
+			if (!memchr(b->hidden + at, 1, n))
+				part = fmax(part,
+					unit * unit *
+						campbell_most(b->x + at, n, s->cal.shape,
+							s->cal.duration));
+		}
+		sum += k == 0 && part > high ? high : part;
+	}
+	return sum * slowest;
+}
+
 enum separate_status separate_dense_section(
 	struct separate *s, long long from, long long to)
 {
@@ -129,6 +159,7 @@ enum separate_status separate_dense_section(
 		s->cal.duration, s->scene.gain, &c);
 	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
 		s->cal.duration, s->scene.gain, &c);
+	p->most = noise * sqrt(most_square(s, from, (size_t)(to - from), &c));
 	campbell_scale(&c, noise, 1);
 	known = c.rate_se < c.rate && c.rate * length < 1e9;
 	p->sources = known ? (int)(c.rate * length + 0.5) : 1;

@@ -39,6 +39,9 @@ struct transit {
 	 * NAN: unknown. */
 	double phase, phase_se;
 	double chi2; /* of the section per degree of freedom */
+	/* Of an unresolved section: that of one particle of the mean velocity with the
+	 * greatest sum of squares that the section may have.  NAN: unknown. */
+	double most;
 	enum separate_verdict verdict;
 	int together; /* 1: a misfit because it may be two particles */
 };

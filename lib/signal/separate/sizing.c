@@ -16,6 +16,7 @@ void sizing_of(const struct transit *p, double rate, double spacing, double kapp
 
 	*out = (struct sizing){ .time = { p->t1 / rate, p->t2 / rate },
 		.diameter = d,
+		.most = sensor_diameter(kappa, velocity, p->most),
 		.amplitude = p->amplitude,
 		.delay = delay,
 		.velocity = velocity,

@@ -11,6 +11,7 @@
 struct sizing {
 	double time[2];   /* arrival at either sensor, s */
 	double diameter;  /* m */
+	double most;      /* diameter of transit.most, m */
 	double amplitude; /* at sensor 1, V */
 	double delay;     /* s */
 	double velocity;  /* m/s */
