@@ -72,7 +72,7 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 		return NULL;
 	}
 	if (par->from_new)
-		observed_begin(&f->observed, 0, par->pair.gap_new);
+		observed_begin(&f->observed, (struct moment){ .gap = par->pair.gap_new });
 	return f;
 }
 
@@ -116,6 +116,7 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 {
 	const struct forecast_par *par = &f->par;
 	struct pair *pair = &f->par.pair;
+	struct moment m = { t, gap, error };
 	int run_in, later;
 	const double *passage;
 
@@ -137,11 +138,10 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
-		observed_begin(&f->observed, t, gap);
+		observed_begin(&f->observed, m);
 	if (!run_in)
-		observed_add(&f->observed, t, value, gap);
-	f->n = paths_predict(
-		f->paths, &f->observed, passage, pair_limit(pair), error, f->life);
+		observed_add(&f->observed, m, value);
+	f->n = paths_predict(f->paths, &f->observed, passage, pair_limit(pair), f->life);
 	if (f->par.grey)
 		f->grey = grey_life(&f->observed.grey,
 			pair_value(pair, par->quantity, pair_limit(pair)), 1, 0, 0);
@@ -151,7 +151,7 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 void forecast_foresee(struct forecast *f)
 {
 	f->n = paths_predict(
-		f->paths, &f->observed, NULL, pair_limit(&f->par.pair), 0, f->life);
+		f->paths, &f->observed, NULL, pair_limit(&f->par.pair), f->life);
 }
 
 static double later_life(double life, double gone)

@@ -13,9 +13,9 @@ static const double ROUNDED = 1e-6;
 static const double FALL = 60, WHITE = 1.2;
 enum { FEWEST = 9 };
 
-void observed_begin(struct observed *o, double t, double gap)
+void observed_begin(struct observed *o, struct moment m)
 {
-	o->first = o->before = o->last = (struct moment){ t, gap };
+	o->first = o->before = o->last = m;
 	o->n_kept = 0;
 	o->passed = 0;
 	o->every = 1;
@@ -38,20 +38,20 @@ static void keep(struct observed *o, struct moment m)
 	o->kept[o->n_kept++] = m;
 }
 
-void observed_add(struct observed *o, double t, double value, double gap)
+void observed_add(struct observed *o, struct moment m, double value)
 {
 	double dt;
 
 	if (!o->begun)
-		observed_begin(o, t, gap);
-	dt = t - o->last.t;
+		observed_begin(o, m);
+	dt = m.t - o->last.t;
 	if (dt > 0 || o->n_kept == 0)
-		keep(o, (struct moment){ t, gap });
-	else if (o->kept[o->n_kept - 1].t == t)
-		o->kept[o->n_kept - 1].gap = gap;
+		keep(o, m);
+	else if (o->kept[o->n_kept - 1].t == m.t)
+		o->kept[o->n_kept - 1] = m;
 	if (dt > 0)
 		o->before = o->last;
-	o->last = (struct moment){ t, gap };
+	o->last = m;
 	if (o->grey.n == 0 || dt > 0)
 		grey_append(&o->grey, value, dt);
 	o->n++;
@@ -62,13 +62,14 @@ double observed_gap(const struct observed *o)
 	return o->begun ? o->last.gap : NAN;
 }
 
-double observed_rate(const struct observed *o, enum rate_rule rule)
+double observed_rate(const struct observed *o, enum rate_rule rule, const double z[2])
 {
 	const struct moment *from = rule == RATE_LAST ? &o->before : &o->first;
+	double error = z ? z[0] * o->last.error - z[1] * from->error : 0;
 
 	if (!(o->last.t > from->t))
 		return NAN;
-	return (o->last.gap - from->gap) / (o->last.t - from->t);
+	return (o->last.gap - from->gap + error) / (o->last.t - from->t);
 }
 
 static double rate_between(const struct moment *m)
