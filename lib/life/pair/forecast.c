@@ -185,3 +185,11 @@ const struct bank *forecast_bank(const struct forecast *f)
 {
 	return f->bank && bank_ready(f->bank) ? f->bank : NULL;
 }
+
+int forecast_contradicts(const struct forecast *f)
+{
+	double low, high;
+
+	return paths_limits(f->paths, &low, &high) &&
+	       observed_rate_outside(&f->observed, low, high);
+}

@@ -11,6 +11,7 @@
 #define LIFE_OBSERVED_H
 
 #include "life/grey/grey.h"
+#include "life/trend/blocks.h"
 
 /* How the wear rate is found (Li's thesis, 4.2). */
 enum rate_rule {
@@ -24,20 +25,14 @@ struct moment {
 	double error; /* standard error of the gap */
 };
 
-/* The least for which at least eight intervals are left when every second one is dropped:
- * with fewer no trend is significant to 1 in 1000.  More are noisier. */
-enum { OBSERVED_KEPT = 17 };
-
 /* All 0 at first. */
 struct observed {
 	int begun;
 	long n; /* observations */
 	struct moment first, before,
-		last; /* of the rates; different times but at first */
-	/* Observations since the start of the rates, one of every so many. */
-	struct moment kept[OBSERVED_KEPT];
-	long every, passed;
-	int n_kept;
+		last;            /* of the rates; different times but at first */
+	struct blocks gaps;      /* since the start of the rates, before the last one */
+	int rated;               /* 1: the last one counts for the rates */
 	struct grey_series grey; /* of the observations at times of their own */
 };
 
@@ -60,6 +55,11 @@ double observed_rate(const struct observed *o, enum rate_rule rule, const double
  * is a process of independent increments at a constant rate, and narrower where readings
  * are noisy.  Sixteen rates have at most 5.4, eight 3.5. */
 double observed_rate_trend(const struct observed *o);
+
+/* 1 if the mean rate is, but for one series in 100, outside of [low, high], its standard
+ * error being that of independent increments, which is too large for readings with noise.
+ */
+int observed_rate_outside(const struct observed *o, double low, double high);
 
 /* 1 if the gap falls at one moment and grows steadily before and after, as by a repair;
  * from nine observations on. */

@@ -145,20 +145,42 @@ const struct path *paths_get(const struct paths *e, long i)
 	return e->path ? &e->path[i] : NULL;
 }
 
+/* The rates of the gap, ascending, to be freed; NULL: none known, or no memory. */
+static double *sorted_rates(const struct paths *e)
+{
+	size_t n = (size_t)e->par.count;
+	double *rate = NULL;
+
+	if (e->path && !isnan(e->path[0].step_time))
+		rate = malloc(n * sizeof *rate);
+	for (size_t i = 0; rate && i < n; i++)
+		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+	if (rate)
+		sort_numbers(rate, n);
+	return rate;
+}
+
+int paths_limits(const struct paths *e, double *low, double *high)
+{
+	size_t n = (size_t)e->par.count, far = n / 200;
+	double *rate = n < 100 ? NULL : sorted_rates(e);
+
+	if (!rate)
+		return 0;
+	*low = rate[far];
+	*high = rate[n - 1 - far];
+	free(rate);
+	return 1;
+}
+
 void paths_rate(const struct paths *e, double *mean, double *sd)
 {
 	size_t n = (size_t)e->par.count;
-	double *rate;
+	double *rate = sorted_rates(e);
 
 	*mean = *sd = 0;
-	if (!e->path || isnan(e->path[0].step_time))
-		return;
-	rate = malloc(n * sizeof *rate);
 	if (!rate)
 		return;
-	for (size_t i = 0; i < n; i++)
-		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
-	sort_numbers(rate, n);
 	*mean = rate[n / 2];
 	/* Not 0: an ensemble without scatter may have only one realisation. */
 	*sd = fmax(

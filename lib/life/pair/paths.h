@@ -63,6 +63,10 @@ const struct path *paths_get(const struct paths *e, long i); /* NULL without par
  * 68 %; sd is 0 if the paths have no rate. */
 void paths_rate(const struct paths *e, double *mean, double *sd);
 
+/* The rates within which all paths lie but one in 100; 0: none have a known step time,
+ * or there are fewer than 100. */
+int paths_limits(const struct paths *e, double *low, double *high);
+
 /* Remaining life at the latest observation, until the gap reaches limit or the share of
  * large particles its critical value, as samples in life, which has room for count.
  * passage: with RATE_FILTER, count samples of the time to the limit (NULL: not yet
