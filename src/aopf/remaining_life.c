@@ -125,7 +125,7 @@ struct outlook {
 	struct outlook_state {
 		int started, direction;
 		struct rescaled scale;
-		struct blocks course;
+		struct plateau course;
 		double factor, range, rescaled; /* of the values, or of the counter, from
 						 * about this time on; 0: none */
 		double first, clock;            /* times of the first and the last row */
@@ -389,7 +389,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 		if (!bank_event(bank_of(o), e->what))
 			o->now.early = fmax(o->now.early, e->t);
 		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
-		o->now.course = (struct blocks){ 0 };
+		o->now.course = (struct plateau){ 0 };
 		o->now.events++;
 	}
 	o->now.heeded = in->t;
@@ -408,7 +408,7 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	now->clock = in->clock;
 	heed_events(o, in);
 	if (!isnan(in->y))
-		blocks_add(&now->course, BLOCKS, in->clock, in->y);
+		plateau_add(&now->course, in->clock, in->y);
 	if (in->clock - now->first >= skip / timeunit())
 		predict_add(o->predict, in->clock, in->y,
 			filtered ? filtered->state + outlook_options.zero : NAN,

@@ -202,7 +202,7 @@ int state_next(struct observations *s)
 			       pair_gap(s->pair, s->quantity, value - error)) /
 		       2;
 	if (s->quantity != PAIR_DEBRIS && !isnan(s->gap))
-		blocks_add(&s->course, BLOCKS, time, s->gap);
+		plateau_add(&s->course, time, s->gap);
 	return 1;
 }
 

@@ -42,7 +42,7 @@ struct observations {
 	long passed;           /* particles without a diameter */
 	long beyond;           /* values that suggest another unit */
 	struct rescaled seen;  /* values, to find out whether their unit changes */
-	struct blocks course; /* of the gap, without particles */
+	struct plateau course; /* of the gap, without particles */
 	struct noise noise;    /* of volumes */
 	double lowest;         /* volume, no more than 0, */
 	long lowest_line;      /* and where it is */

@@ -11,7 +11,6 @@
 #define LIFE_OBSERVED_H
 
 #include "life/grey/grey.h"
-#include "life/trend/blocks.h"
 
 /* How the wear rate is found (Li's thesis, 4.2). */
 enum rate_rule {
@@ -25,14 +24,20 @@ struct moment {
 	double error; /* standard error of the gap */
 };
 
+/* The least for which at least eight intervals are left when every second one is dropped:
+ * with fewer no trend is significant to 1 in 1000.  More are noisier. */
+enum { OBSERVED_KEPT = 17 };
+
 /* All 0 at first. */
 struct observed {
 	int begun;
 	long n; /* observations */
 	struct moment first, before,
-		last;            /* of the rates; different times but at first */
-	struct blocks gaps;      /* since the start of the rates, before the last one */
-	int rated;               /* 1: the last one counts for the rates */
+		last; /* of the rates; different times but at first */
+	/* Observations since the start of the rates, one of every so many. */
+	struct moment kept[OBSERVED_KEPT];
+	long every, passed;
+	int n_kept;
 	struct grey_series grey; /* of the observations at times of their own */
 };
 

@@ -9,9 +9,19 @@
 #ifndef LIFE_PLATEAU_H
 #define LIFE_PLATEAU_H
 
-#include "life/trend/blocks.h"
+enum { PLATEAU_BLOCKS = 48 }; /* means at most; then pairs are joined */
 
+/* All zero at first. */
+struct plateau {
+	struct block {
+		double t, y;
+	} block[PLATEAU_BLOCKS], next; /* next: the sums of the next one so far */
+	long each, rows;               /* rows of a block, of the next one so far */
+	int n;
+};
+
+void plateau_add(struct plateau *p, double t, double y);
 /* 1 if the values have approached the threshold, and have stopped short of it. */
-int plateau_reached(const struct blocks *p, double threshold);
+int plateau_reached(const struct plateau *p, double threshold);
 
 #endif
