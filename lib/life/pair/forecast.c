@@ -30,13 +30,17 @@ struct forecast {
 static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
-	double limit = pair_limit(&par->pair);
+	double limit = pair_limit(&par->pair), rate[3];
 	struct bank_par bank = {
 		.direction = 1, .load = par->load, .n_loads = par->n_loads
 	};
 
-	if (par->scaled)
-		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
+	if (par->scaled &&
+		paths_rates(f->paths, (double[]){ 0.159, 0.5, 0.841 }, 3, rate)) {
+		bank.rate_mean = rate[1];
+		/* Not 0: an ensemble without scatter may have only one realisation. */
+		bank.rate_sd = fmax((rate[2] - rate[0]) / 2, 1e-6 * rate[1]);
+	}
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
 	f->threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
 	bank.threshold = f->threshold;
@@ -188,8 +192,9 @@ const struct bank *forecast_bank(const struct forecast *f)
 
 int forecast_contradicts(const struct forecast *f)
 {
-	double low, high;
+	double rate[2];
 
-	return paths_limits(f->paths, &low, &high) &&
-	       observed_rate_outside(&f->observed, low, high);
+	return f->draws->count >= 100 &&
+	       paths_rates(f->paths, (double[]){ 0.005, 0.995 }, 2, rate) &&
+	       observed_rate_outside(&f->observed, rate[0], rate[1]);
 }

@@ -145,49 +145,22 @@ const struct path *paths_get(const struct paths *e, long i)
 	return e->path ? &e->path[i] : NULL;
 }
 
-/* The rates of the gap, ascending, to be freed; NULL: none known, or no memory. */
-static double *sorted_rates(const struct paths *e)
+int paths_rates(const struct paths *e, const double *level, int n, double *rate)
 {
-	size_t n = (size_t)e->par.count;
-	double *rate = NULL;
+	size_t count = (size_t)e->par.count;
+	double *all = NULL;
 
 	if (e->path && !isnan(e->path[0].step_time))
-		rate = malloc(n * sizeof *rate);
-	for (size_t i = 0; rate && i < n; i++)
-		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
-	if (rate)
-		sort_numbers(rate, n);
-	return rate;
-}
-
-int paths_limits(const struct paths *e, double *low, double *high)
-{
-	size_t n = (size_t)e->par.count, far = n / 200;
-	double *rate = n < 100 ? NULL : sorted_rates(e);
-
-	if (!rate)
+		all = malloc(count * sizeof *all);
+	if (!all)
 		return 0;
-	*low = rate[far];
-	*high = rate[n - 1 - far];
-	free(rate);
+	for (size_t i = 0; i < count; i++)
+		all[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+	sort_numbers(all, count);
+	for (int k = 0; k < n; k++)
+		rate[k] = all[(size_t)(level[k] * (double)count)];
+	free(all);
 	return 1;
-}
-
-void paths_rate(const struct paths *e, double *mean, double *sd)
-{
-	size_t n = (size_t)e->par.count;
-	double *rate = sorted_rates(e);
-
-	*mean = *sd = 0;
-	if (!rate)
-		return;
-	*mean = rate[n / 2];
-	/* Not 0: an ensemble without scatter may have only one realisation. */
-	*sd = fmax(
-		(rate[(size_t)(0.841 * (double)n)] - rate[(size_t)(0.159 * (double)n)]) /
-			2,
-		1e-6 * *mean);
-	free(rate);
 }
 
 /* Time in which path i opens the gap by left, in steps of tau. */

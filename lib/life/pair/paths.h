@@ -59,13 +59,9 @@ void paths_free(struct paths *e);
 const struct paths_par *paths_par(const struct paths *e);
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
-/* Rate of the gap over the paths, per s: median, and half of the width of the middle
- * 68 %; sd is 0 if the paths have no rate. */
-void paths_rate(const struct paths *e, double *mean, double *sd);
-
-/* The rates within which all paths lie but one in 100; 0: none have a known step time,
- * or there are fewer than 100. */
-int paths_limits(const struct paths *e, double *low, double *high);
+/* Quantiles of the rate of the gap over the paths at n levels, in [0, 1), per s; 0: the
+ * paths have none. */
+int paths_rates(const struct paths *e, const double *level, int n, double *rate);
 
 /* Remaining life at the latest observation, until the gap reaches limit or the share of
  * large particles its critical value, as samples in life, which has room for count.
