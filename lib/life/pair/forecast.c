@@ -108,13 +108,6 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	return NUM_OK;
 }
 
-/* Passes the covariates on, also of a row without an observation. */
-static void load_bank(struct forecast *f, double t, const double *load)
-{
-	if (f->bank && f->par.n_loads > 0)
-		bank_load(f->bank, t, load);
-}
-
 enum num_status forecast_add(struct forecast *f, double t, double value, double gap,
 	double error, const double *load)
 {
@@ -128,17 +121,16 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 		f->first_t = t;
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > f->observed.last.t;
-	if (isnan(gap)) {
-		load_bank(f, t, load);
-		return NUM_OK;
-	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	/* the sum of the particles so far never falls */
 	if ((f->draws->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
-		isfinite(pair_limit(pair)) && open_bank(f))
+		!isnan(gap) && isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
-	load_bank(f, t, load);
+	if (f->bank)
+		bank_load(f->bank, t, load);
+	if (isnan(gap))
+		return NUM_OK;
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
