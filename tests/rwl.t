@@ -286,8 +286,24 @@ ok "an uncertain state is accepted" rwl --wear even.tsv --step-time 1h --thresho
 near "the standard deviation of the life is 5 h" "$(calc "($(cell out 1 q95) - $(cell out 1 q05)) / 2 / 1.644854")" 18000 400
 near "the median does not change" "$(cell out 1 q50)" 180000 600
 near "ten paths are beyond the threshold" "$(cell out 5 q95)" 0 0
-ok "an uncertain state is accepted without fragments" rwl --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
-near "the rate is 1 um/h" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" 1800 40
+# Without fragments the rate is that of two such readings: 2 um are left after 3 um in 3 h, and the life has the
+# relative errors e2 / 2 + (e2 - e1) / 3.
+ok "an uncertain state is accepted without fragments" rwl --threshold-gap 15um --state-error 0.05e-6 -c 20000 gap.tsv
+near "the rate is as uncertain as the state" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" \
+	"$(calc "7200 * 0.05 * sqrt((1 / 2 + 1 / 3)^2 + (1 / 3)^2)")" 8
+
+# Fragments that wear 0.1 um/h, and pairs that do and do not.
+for rate in 1 3; do
+	awk -v rate=$rate 'BEGIN { print "t\tgap"
+		for (k = 0; k < 12; k++) printf "%d\t%.6g\n", 3600 * k, 1e-5 + 1e-7 * rate * (k + 0.1 * (k % 3)) }' >rate$rate.tsv
+done
+for how in mean last; do
+	ok "fragments of the pair, $how" rwl --wear even.tsv --step-time 1h --threshold-gap 15um --wear-rate $how rate1.tsv
+	rwl --wear even.tsv --step-time 1h --threshold-gap 15um --wear-rate $how rate3.tsv >life.tsv 2>err
+	is "of another, $how" "$? $(grep -c '^rwl: the gap does not grow at the rate of the fragments' err) $(grep -c '^# doubtful' life.tsv)" "3 1 1"
+done
+ok "filters follow the gap" rwl --wear even.tsv --step-time 1h --threshold-gap 15um --wear-rate filter rate3.tsv
+ok "so does a step time by the state" rwl --wear even.tsv --threshold-gap 15um rate3.tsv
 
 # Run-in: the rates start after it, the state is known all the time.
 printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv

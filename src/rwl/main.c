@@ -322,6 +322,9 @@ static int check_state(
 			": the wear rests, or the sensor is at the end of its range");
 	if (bank && bank_recedes(bank))
 		status = doubt(out, "the gap closes", ": no life ends");
+	if (rule != RATE_FILTER && forecast_contradicts(f))
+		status = doubt(out, "the gap does not grow at the rate of the fragments",
+			": their step time, pressure or wear is not that of this pair");
 	if (rule == RATE_MEAN &&
 		(observed_falls(observed) || (bank && bank_repaired(bank))))
 		return doubt(out, "the gap falls behind its rate",

@@ -233,7 +233,7 @@ double state_slope(const char *file, const struct pair *pair, double skip)
 		if (isnan(s.gap) || s.t - s.first_t < skip)
 			continue;
 		regression_add(&line, s.t, s.gap);
-		observed_add(&gaps, s.t, s.value, s.gap);
+		observed_add(&gaps, (struct moment){ s.t, s.gap, s.gap_error }, s.value);
 	}
 	if (observed_falls(&gaps))
 		die(EXIT_RUN,

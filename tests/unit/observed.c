@@ -11,26 +11,28 @@ static void check_rates(void)
 	struct observed by_last = { 0 }, *last = &by_last;
 	double t[] = { 10, 11, 13, 13, 17 }, h[] = { 1, 2, 3, 4, 6 };
 
-	ok(isnan(observed_rate(mean, RATE_MEAN)), "no observation gives no rate");
+	ok(isnan(observed_rate(mean, RATE_MEAN, NULL)), "no observation gives no rate");
 	for (int i = 0; i < 5; i++) {
-		observed_add(mean, t[i], h[i], h[i]);
-		observed_add(last, t[i], h[i], h[i]);
+		observed_add(mean, (struct moment){ t[i], h[i], 0 }, h[i]);
+		observed_add(last, (struct moment){ t[i], h[i], 0 }, h[i]);
 		if (i == 0)
-			ok(isnan(observed_rate(mean, RATE_MEAN)),
+			ok(isnan(observed_rate(mean, RATE_MEAN, NULL)),
 				"one observation gives no rate");
 		if (i == 3)
-			near(observed_rate(last, RATE_LAST), 1, 0,
+			near(observed_rate(last, RATE_LAST, NULL), 1, 0,
 				"observations at the same time take the rate from the time before");
 	}
-	near(observed_rate(mean, RATE_MEAN), 5 / 7., 1e-15,
+	near(observed_rate(mean, RATE_MEAN, NULL), 5 / 7., 1e-15,
 		"the mean rate is the whole wear over its time");
-	near(observed_rate(last, RATE_LAST), 0.5, 0,
+	near(observed_rate(last, RATE_LAST, NULL), 0.5, 0,
 		"the last rate is the last wear over its time");
 	ok(last->n == 5 && observed_gap(last) == 6 && last->last.t == 17,
 		"the latest observation is returned");
-	observed_begin(mean, 20, 7);
-	observed_add(mean, 22, 8, 8);
-	near(observed_rate(mean, RATE_MEAN), 0.5, 0, "the rates can be restarted");
+	observed_begin(mean, (struct moment){ 20, 7, 0.5 });
+	observed_add(mean, (struct moment){ 22, 8, 0.25 }, 8);
+	near(observed_rate(mean, RATE_MEAN, NULL), 0.5, 0, "the rates can be restarted");
+	near(observed_rate(mean, RATE_MEAN, (double[]){ 2, -1 }), 1, 0,
+		"the errors of both gaps are those of the rate");
 }
 
 /* Of a gap in so many rows. */
@@ -39,7 +41,8 @@ static double trend_of(int rows, double (*gap)(double part))
 	struct observed by_mean = { 0 };
 
 	for (int i = 0; i < rows; i++)
-		observed_add(&by_mean, 10 * i, 1, gap((double)i / rows));
+		observed_add(
+			&by_mean, (struct moment){ 10 * i, gap((double)i / rows), 0 }, 1);
 	return observed_rate_trend(&by_mean);
 }
 
@@ -59,8 +62,8 @@ static double trend_of_replaced(void)
 	struct observed by_mean = { 0 };
 
 	for (int i = 0; i < 9; i++) {
-		observed_add(&by_mean, 10 * i, 1, -square(i / 9.));
-		observed_add(&by_mean, 10 * i, 1, square(i / 9.));
+		observed_add(&by_mean, (struct moment){ 10 * i, -square(i / 9.), 0 }, 1);
+		observed_add(&by_mean, (struct moment){ 10 * i, square(i / 9.), 0 }, 1);
 	}
 	return observed_rate_trend(&by_mean);
 }
@@ -94,7 +97,10 @@ static int falls(int rows, double (*gap)(double part), double halt)
 	struct observed o = { 0 };
 
 	for (int i = 0; i < rows; i++)
-		observed_add(&o, i + (2 * i > rows ? halt : 0), 1, gap((double)i / rows));
+		observed_add(&o,
+			(struct moment){
+				i + (2 * i > rows ? halt : 0), gap((double)i / rows), 0 },
+			1);
 	return observed_falls(&o);
 }
 
@@ -119,7 +125,7 @@ static void check_grey(const char *what, double level, double unit)
 	for (int i = 0; i < N; i++) {
 		t[i] = (1e6 + i + 0.3 * sin(i * i)) * unit;
 		x[i] = level * exp(2e-5 * i) * (1 + 0.03 * sin(3. * i * i));
-		observed_add(o, t[i], x[i], 1);
+		observed_add(o, (struct moment){ t[i], 1, 0 }, x[i]);
 		if (i >= 3 && (i < 60 || i % 1000 == 0 || i == N - 1)) {
 			struct grey g = { 0 };
 			double spacing = (t[i] - t[0]) / i, now, rate, want;
@@ -155,7 +161,7 @@ int main(void)
 	for (int i = 0; i < 10; i++) {
 		ok(i >= 4 || isnan(grey_life(&o->grey, 3, 1, 0, 0)),
 			"a model needs four values");
-		observed_add(o, i, 2, 2);
+		observed_add(o, (struct moment){ i, 2, 0 }, 2);
 	}
 	ok(isinf(grey_life(&o->grey, 3, 1, 0, 0)) && grey_life(&o->grey, 2, 1, 0, 0) == 0,
 		"a constant is continued as a constant");

@@ -30,13 +30,17 @@ struct forecast {
 static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
-	double limit = pair_limit(&par->pair);
+	double limit = pair_limit(&par->pair), rate[3];
 	struct bank_par bank = {
 		.direction = 1, .load = par->load, .n_loads = par->n_loads
 	};
 
-	if (par->scaled)
-		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
+	if (par->scaled &&
+		paths_rates(f->paths, (double[]){ 0.159, 0.5, 0.841 }, 3, rate)) {
+		bank.rate_mean = rate[1];
+		/* Not 0: an ensemble without scatter may have only one realisation. */
+		bank.rate_sd = fmax((rate[2] - rate[0]) / 2, 1e-6 * rate[1]);
+	}
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
 	f->threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
 	bank.threshold = f->threshold;
@@ -72,7 +76,7 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 		return NULL;
 	}
 	if (par->from_new)
-		observed_begin(&f->observed, 0, par->pair.gap_new);
+		observed_begin(&f->observed, (struct moment){ .gap = par->pair.gap_new });
 	return f;
 }
 
@@ -104,18 +108,12 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	return NUM_OK;
 }
 
-/* Passes the covariates on, also of a row without an observation. */
-static void load_bank(struct forecast *f, double t, const double *load)
-{
-	if (f->bank && f->par.n_loads > 0)
-		bank_load(f->bank, t, load);
-}
-
 enum num_status forecast_add(struct forecast *f, double t, double value, double gap,
 	double error, const double *load)
 {
 	const struct forecast_par *par = &f->par;
 	struct pair *pair = &f->par.pair;
+	struct moment m = { t, gap, error };
 	int run_in, later;
 	const double *passage;
 
@@ -123,25 +121,23 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 		f->first_t = t;
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > f->observed.last.t;
-	if (isnan(gap)) {
-		load_bank(f, t, load);
-		return NUM_OK;
-	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	/* the sum of the particles so far never falls */
 	if ((f->draws->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
-		isfinite(pair_limit(pair)) && open_bank(f))
+		!isnan(gap) && isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
-	load_bank(f, t, load);
+	if (f->bank)
+		bank_load(f->bank, t, load);
+	if (isnan(gap))
+		return NUM_OK;
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
-		observed_begin(&f->observed, t, gap);
+		observed_begin(&f->observed, m);
 	if (!run_in)
-		observed_add(&f->observed, t, value, gap);
-	f->n = paths_predict(
-		f->paths, &f->observed, passage, pair_limit(pair), error, f->life);
+		observed_add(&f->observed, m, value);
+	f->n = paths_predict(f->paths, &f->observed, passage, pair_limit(pair), f->life);
 	if (f->par.grey)
 		f->grey = grey_life(&f->observed.grey,
 			pair_value(pair, par->quantity, pair_limit(pair)), 1, 0, 0);
@@ -151,7 +147,7 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 void forecast_foresee(struct forecast *f)
 {
 	f->n = paths_predict(
-		f->paths, &f->observed, NULL, pair_limit(&f->par.pair), 0, f->life);
+		f->paths, &f->observed, NULL, pair_limit(&f->par.pair), f->life);
 }
 
 static double later_life(double life, double gone)
@@ -184,4 +180,13 @@ const struct observed *forecast_observed(const struct forecast *f)
 const struct bank *forecast_bank(const struct forecast *f)
 {
 	return f->bank && bank_ready(f->bank) ? f->bank : NULL;
+}
+
+int forecast_contradicts(const struct forecast *f)
+{
+	double rate[2];
+
+	return f->draws->count >= 100 &&
+	       paths_rates(f->paths, (double[]){ 0.005, 0.995 }, 2, rate) &&
+	       observed_rate_outside(&f->observed, rate[0], rate[1]);
 }

@@ -58,6 +58,10 @@ void forecast_foresee(struct forecast *f);
 const struct observed *forecast_observed(const struct forecast *f);
 const struct bank *forecast_bank(const struct forecast *f);
 
+/* 1 if the gap does not grow at the rate of the paths, but for one series in 100; 0 also
+ * where that is not known, or from fewer than 100 paths. */
+int forecast_contradicts(const struct forecast *f);
+
 /* The forecast at the latest known gap minus the time since then. */
 struct forecast_row forecast_at(struct forecast *f, double t);
 

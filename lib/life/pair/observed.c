@@ -1,5 +1,6 @@
 /* observed.c - see observed.h */
 #include "life/pair/observed.h"
+#include "num/student.h"
 #include <math.h>
 
 /* Rates that differ by less, relative, are equal. */
@@ -13,9 +14,11 @@ static const double ROUNDED = 1e-6;
 static const double FALL = 60, WHITE = 1.2;
 enum { FEWEST = 9 };
 
-void observed_begin(struct observed *o, double t, double gap)
+static const double CHANCE = 0.01; /* of an error of the rate */
+
+void observed_begin(struct observed *o, struct moment m)
 {
-	o->first = o->before = o->last = (struct moment){ t, gap };
+	o->first = o->before = o->last = m;
 	o->n_kept = 0;
 	o->passed = 0;
 	o->every = 1;
@@ -38,20 +41,20 @@ static void keep(struct observed *o, struct moment m)
 	o->kept[o->n_kept++] = m;
 }
 
-void observed_add(struct observed *o, double t, double value, double gap)
+void observed_add(struct observed *o, struct moment m, double value)
 {
 	double dt;
 
 	if (!o->begun)
-		observed_begin(o, t, gap);
-	dt = t - o->last.t;
+		observed_begin(o, m);
+	dt = m.t - o->last.t;
 	if (dt > 0 || o->n_kept == 0)
-		keep(o, (struct moment){ t, gap });
-	else if (o->kept[o->n_kept - 1].t == t)
-		o->kept[o->n_kept - 1].gap = gap;
+		keep(o, m);
+	else if (o->kept[o->n_kept - 1].t == m.t)
+		o->kept[o->n_kept - 1] = m;
 	if (dt > 0)
 		o->before = o->last;
-	o->last = (struct moment){ t, gap };
+	o->last = m;
 	if (o->grey.n == 0 || dt > 0)
 		grey_append(&o->grey, value, dt);
 	o->n++;
@@ -62,13 +65,14 @@ double observed_gap(const struct observed *o)
 	return o->begun ? o->last.gap : NAN;
 }
 
-double observed_rate(const struct observed *o, enum rate_rule rule)
+double observed_rate(const struct observed *o, enum rate_rule rule, const double z[2])
 {
 	const struct moment *from = rule == RATE_LAST ? &o->before : &o->first;
+	double error = z ? z[0] * o->last.error - z[1] * from->error : 0;
 
 	if (!(o->last.t > from->t))
 		return NAN;
-	return (o->last.gap - from->gap) / (o->last.t - from->t);
+	return (o->last.gap - from->gap + error) / (o->last.t - from->t);
 }
 
 static double rate_between(const struct moment *m)
@@ -89,6 +93,24 @@ double observed_rate_trend(const struct observed *o)
 				grows += b > a ? 1 : -1;
 		}
 	return grows == 0 ? 0 : grows / sqrt(n * (n - 1) * (2 * n + 5) / 18);
+}
+
+int observed_rate_outside(const struct observed *o, double low, double high)
+{
+	int n = o->n_kept - 1;
+	double time, rate, squares = 0, error;
+
+	if (n < 2)
+		return 0;
+	time = o->kept[n].t - o->kept[0].t;
+	rate = (o->kept[n].gap - o->kept[0].gap) / time;
+	for (int i = 0; i < n; i++) {
+		const struct moment *m = &o->kept[i];
+
+		squares += pow(m[1].gap - m[0].gap - rate * (m[1].t - m[0].t), 2);
+	}
+	error = sqrt(squares * n / (n - 1)) / time * student_two_sided(1 - CHANCE, n - 1);
+	return rate - error > high || rate + error < low;
 }
 
 /* What is left of the squares of the gaps kept about two parallel lines, one before

@@ -145,27 +145,22 @@ const struct path *paths_get(const struct paths *e, long i)
 	return e->path ? &e->path[i] : NULL;
 }
 
-void paths_rate(const struct paths *e, double *mean, double *sd)
+int paths_rates(const struct paths *e, const double *level, int n, double *rate)
 {
-	size_t n = (size_t)e->par.count;
-	double *rate;
+	size_t count = (size_t)e->par.count;
+	double *all = NULL;
 
-	*mean = *sd = 0;
-	if (!e->path || isnan(e->path[0].step_time))
-		return;
-	rate = malloc(n * sizeof *rate);
-	if (!rate)
-		return;
-	for (size_t i = 0; i < n; i++)
-		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
-	sort_numbers(rate, n);
-	*mean = rate[n / 2];
-	/* Not 0: an ensemble without scatter may have only one realisation. */
-	*sd = fmax(
-		(rate[(size_t)(0.841 * (double)n)] - rate[(size_t)(0.159 * (double)n)]) /
-			2,
-		1e-6 * *mean);
-	free(rate);
+	if (e->path && !isnan(e->path[0].step_time))
+		all = malloc(count * sizeof *all);
+	if (!all)
+		return 0;
+	for (size_t i = 0; i < count; i++)
+		all[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+	sort_numbers(all, count);
+	for (int k = 0; k < n; k++)
+		rate[k] = all[(size_t)(level[k] * (double)count)];
+	free(all);
+	return 1;
 }
 
 /* Time in which path i opens the gap by left, in steps of tau. */
@@ -188,40 +183,34 @@ static double until_large(long step, double step_time, double t)
 	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
 }
 
-/* Error of the state on path i, in standard errors. */
-static double draw_error(const struct paths *e, long i)
-{
-	double z[2];
-
-	philox_normal2(e->par.seed, e->par.first + (uint32_t)i, RNG_PREDICT, 1, z);
-	return z[0];
-}
-
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
-	double limit, double gap_error, double *life)
+	double limit, double *life)
 {
-	double left = limit - observed_gap(o), rate = observed_rate(o, e->par.rule);
-	int filtered = e->par.rule == RATE_FILTER;
-	double scaled = INFINITY; /* step time by which the mean wears as observed */
+	double left = limit - observed_gap(o), rate = observed_rate(o, e->par.rule, NULL);
+	int filtered = e->par.rule == RATE_FILTER, exact = !(o->last.error > 0);
 
-	if (left <= 0 && !(gap_error > 0) && !passage) {
+	if (left <= 0 && exact && !passage) {
 		life[0] = 0;
 		return 1;
 	}
 	if (filtered ? !passage
 		     : isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
 		return 0;
-	if (!filtered && !e->path && !(gap_error > 0)) {
+	if (!filtered && !e->path && exact) {
 		life[0] = remaining_constant(left, rate);
 		return 1;
 	}
-	if (rate > 0)
-		scaled = e->mean / (e->par.area * rate);
 	for (long i = 0; i < e->par.count; i++) {
-		double here = left, tau = scaled;
+		double here = left, tau, z[2];
 
-		if (gap_error > 0)
-			here -= gap_error * draw_error(e, i);
+		if (!exact) {
+			philox_normal2(e->par.seed, e->par.first + (uint32_t)i,
+				RNG_PREDICT, 1, z);
+			here -= o->last.error * z[0];
+			rate = observed_rate(o, e->par.rule, z);
+		}
+		/* by default such that the mean wears as observed */
+		tau = rate > 0 ? e->mean / (e->par.area * rate) : INFINITY;
 		if (e->path && !isnan(e->path[i].step_time))
 			tau = e->path[i].step_time;
 		if (filtered)

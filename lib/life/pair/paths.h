@@ -15,7 +15,7 @@
  *	struct paths_par par = { .seed = 1, .count = 1000, .step_time = 3600,
  *		.area = 2346.3e-6, .critical = NAN };
  *	struct paths *e = paths_new(&par, partition);
- *	n = paths_predict(e, observed, NULL, limit, 0, life);
+ *	n = paths_predict(e, observed, NULL, limit, life);
  *	paths_free(e);
  */
 #ifndef LIFE_PATHS_H
@@ -59,18 +59,17 @@ void paths_free(struct paths *e);
 const struct paths_par *paths_par(const struct paths *e);
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
-/* Rate of the gap over the paths, per s: median, and half of the width of the middle
- * 68 %; sd is 0 if the paths have no rate. */
-void paths_rate(const struct paths *e, double *mean, double *sd);
+/* Quantiles of the rate of the gap over the paths at n levels, in [0, 1), per s; 0: the
+ * paths have none. */
+int paths_rates(const struct paths *e, const double *level, int n, double *rate);
 
 /* Remaining life at the latest observation, until the gap reaches limit or the share of
  * large particles its critical value, as samples in life, which has room for count.
- * gap_error: standard error of the observed gap.  passage: with RATE_FILTER, count
- * samples of the time to the limit (NULL: not yet known), which include that error.
- * Returns the number of samples: count; 1 if all are the same; 0 if there is no
- * prediction yet. */
+ * passage: with RATE_FILTER, count samples of the time to the limit (NULL: not yet
+ * known), which include the error of the observations. Returns the number of samples:
+ * count; 1 if all are the same; 0 if there is no prediction yet. */
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
-	double limit, double gap_error, double *life);
+	double limit, double *life);
 
 /* Time to wear volume left at a constant rate (4-29); never for rate <= 0.  Any unit of
  * time and volume. */

@@ -5,6 +5,7 @@
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
 	LEVELS = 24, /* of a path */
@@ -22,7 +23,7 @@ static const double KINSHIP = 6.4;
 struct unit {
 	int rows;
 	double t[3], y[3]; /* last rows, newest first; y times the direction */
-	double first, last;
+	double first;
 	struct bank *bank;
 	struct bank_point *point; /* rising */
 	size_t n, room;
@@ -105,16 +106,13 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 
 	if (!p)
 		return NUM_MEMORY;
-	if (p->rows > 0 && t <= p->last)
-		return t < p->last ? NUM_DOMAIN : NUM_OK;
+	if (p->rows > 0 && t <= p->t[0])
+		return t < p->t[0] ? NUM_DOMAIN : NUM_OK;
 	if (p->rows++ == 0)
 		p->first = t;
-	p->last = t;
 	bank_add(p->bank, t, y);
-	for (int k = 2; k > 0; k--) {
-		p->t[k] = p->t[k - 1];
-		p->y[k] = p->y[k - 1];
-	}
+	memmove(p->t + 1, p->t, 2 * sizeof *p->t);
+	memmove(p->y + 1, p->y, 2 * sizeof *p->y);
 	p->t[0] = t;
 	p->y[0] = f->direction * y;
 	if (p->rows < 3)
@@ -134,11 +132,11 @@ static enum num_status carry_on(const struct fleet *f, struct unit *p)
 	for (int k = 1; status == NUM_OK && k <= AHEAD && bank_ready(p->bank); k++) {
 		double level = from + (end - from) * k / AHEAD;
 
-		status = bank_draw(p->bank, chances, p->last, f->direction * level, life);
+		status = bank_draw(p->bank, chances, p->t[0], f->direction * level, life);
 		if (status == NUM_OK)
 			select_ranks(life, DRAWS, &middle, 1);
 		if (status == NUM_OK && isfinite(life[middle]))
-			status = rise(p, p->last - p->first + life[middle], level);
+			status = rise(p, p->t[0] - p->first + life[middle], level);
 	}
 	bank_chances_free(chances);
 	return status;

@@ -59,10 +59,10 @@ void predict_add(struct predict *p, double t, double y, double state, const doub
 	if (p->now.rows++ == 0)
 		p->now.first = t;
 	p->now.last = t;
-	if (p->bank && p->par.bank.n_loads > 0)
-		bank_load(p->bank, t, load);
-	if (p->bank)
-		bank_add(p->bank, t, y);
+	if (!p->bank)
+		return;
+	bank_load(p->bank, t, load);
+	bank_add(p->bank, t, y);
 }
 
 int predict_draws(const struct predict *p)
