@@ -25,8 +25,8 @@ struct look {
 	double wander;         /* mean square change of lines over some thousand samples,
 				  noise 1 */
 	struct colour noise;
-	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike
-		     */
+	int first;  /* 1: return COLOURED if the noise is coloured; of a whitened record,
+		       only if no events are alike */
 	int drifts; /* 1: return COLOURED if the noise drifts */
 	int seen;   /* 1: another attempt told particles from noise */
 	int wide;   /* 1: search the delays of turbulent flow, else of plug flow */

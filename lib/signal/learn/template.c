@@ -111,13 +111,46 @@ static void offer(struct search *s, size_t from, size_t to)
 	s->count += s->count < TEMPLATE_EVENTS;
 }
 
+/* Share of the power of an event at its loudest below which it has ended: behind a
+ * high-pass the tail of a loud pulse stays above the noise until the next one.  In eight
+ * records of pulses behind one at 25 to 40 dB, 0.001, 0.003 and 0.01 find 182, 180 and
+ * 180 of 320 particles, and 44 where only the noise ends an event. */
+static const double FADED = 0.001;
+
+/* Power of the points of the coarse grid from from to before from + width. */
+static double power_from(const struct search *s, size_t from, size_t width)
+{
+	return dot(s->z[0] + from, s->z[0] + from, width) +
+	       dot(s->z[1] + from, s->z[1] + from, width);
+}
+
+/* Offers what is around the loudest part of [begin, end) if it is not much longer than a
+ * pulse. */
+static void offer_loudest(struct search *s, size_t begin, size_t end, size_t width)
+{
+	size_t longest = (size_t)(5 * s->T / s->q), first = begin, last;
+	double most = 0;
+
+	for (size_t i = begin; i + width <= end; i++)
+		if (power_from(s, i, width) > most) {
+			most = power_from(s, i, width);
+			first = i;
+		}
+	last = first;
+	while (last + width < end && power_from(s, last + 1, width) > FADED * most)
+		last++;
+	while (first > begin && power_from(s, first - 1, width) > FADED * most)
+		first--;
+	if (last + width - first < longest)
+		offer(s, first, last + width);
+}
+
 /* Finds the intervals whose power within a duration exceeds the noise by eight standard
- * deviations and that are not much longer than a pulse. */
+ * deviations. */
 static void find_events(struct search *s)
 {
 	size_t width = (size_t)fmax(floor(s->T / s->q), 4), begin = 0, end = 0;
 	double limit = 2 * (double)width + 8 * sqrt(4 * (double)width), sum = 0;
-	size_t longest = (size_t)(5 * s->T / s->q);
 
 	for (size_t i = 0; i < s->points; i++) {
 		sum += s->z[0][i] * s->z[0][i] + s->z[1][i] * s->z[1][i];
@@ -127,14 +160,14 @@ static void find_events(struct search *s)
 		if (i < width || sum < limit)
 			continue;
 		if (end + width / 2 < i) { /* another one begins */
-			if (end > begin && end - begin < longest)
-				offer(s, begin, end);
+			if (end > begin)
+				offer_loudest(s, begin, end, width);
 			begin = i - width;
 		}
 		end = i + 1;
 	}
-	if (end > begin && end - begin < longest)
-		offer(s, begin, end);
+	if (end > begin)
+		offer_loudest(s, begin, end, width);
 }
 
 /* Lag of x, 2 half + 1 points around at, within +-range, at which it is most similar to p
