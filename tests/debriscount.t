@@ -10,6 +10,10 @@ cell() {
 # Five particles of 50 um and one of 120 um in half an hour, some of them doubtful.
 printf 'time1\tdiameter\tverdict\tsources\n100\t50e-6\talone\t1\n200\t50e-6\toverlap\t2\n300\t50e-6\talone\t1
 400\t50e-6\tmisfit\t1\n500\t50e-6\talone\t1\n600\t50e-6\talone\t1\n700\t120e-6\talone\t1\n' >six.tsv
+printf 'time1\ttime2\tdiameter\n-0.001\t0.01\t50e-6\n100\t100.01\t50e-6\n' >before.tsv
+is "a particle that reaches sensor 2 after the record began counts" "$(debriscount before.tsv | column rows /dev/stdin)" 2
+printf 'time1\ttime2\tdiameter\n-2\t-1\t50e-6\n' >earlier.tsv
+fails "a particle that passed both sensors before it" 1 'line 2: time1 is -2, want a time of 0 or later' debriscount earlier.tsv
 debriscount --duration 30min --density 7.8g/cm3 --flow 2L/min --stats st six.tsv >all.tsv 2>err
 is "doubtful rows are left out, counted and reported" \
 	"$(cell rows all.tsv) $(cell doubtful all.tsv) $(cell rows_doubtful st) $(grep -c 'left out' err)" "6 1 1 1"

@@ -140,10 +140,14 @@ static int time_column(struct table_in *t)
 	return found;
 }
 
-static double time_of(const struct table_in *t, int column)
+/* A particle that was at the first sensor before the record began, but is at the second
+ * one in it, counts from the beginning. */
+static double time_of(const struct table_in *t, int column, int second)
 {
 	double v = table_number(t, column);
 
+	if (v < 0 && second >= 0 && table_number(t, second) >= 0)
+		return 0;
 	if (!isfinite(v) || v < 0)
 		die(EXIT_RUN, "%s: line %ld: %s is %g, want a time of 0 or later",
 			table_name(t), table_line(t), table_column_name(t, column), v);
@@ -185,7 +189,7 @@ static double count_rows(
 	struct table_in *t, const struct detection *detection, struct groups *groups)
 {
 	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
-	int cv = verdict_column(t);
+	int cv = verdict_column(t), c2 = table_find_quantity(t, "time2", UNIT_TIME);
 	const struct stretch_columns columns = { table_find(t, "sources"), cd,
 		table_find_quantity(t, "diameter_se", UNIT_LENGTH),
 		table_find_quantity(t, "diameter_most", UNIT_LENGTH) };
@@ -206,7 +210,7 @@ static double count_rows(
 
 		if (v == VERDICT_FOREIGN)
 			continue;
-		time = ct >= 0 ? time_of(t, ct) : NAN;
+		time = ct >= 0 ? time_of(t, ct, c2) : NAN;
 		if (table_part(t) != part && ct >= 0 &&
 			(isnan(duration) || !isnan(period)))
 			die(EXIT_RUN,
