@@ -835,8 +835,8 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	if (status == SEPARATE_OK && look->first && look->coloured &&
 		(!c->whitening.tap || look->found.events == 0) &&
 		!measure_white_above(look, c->duration))
-		return SEPARATE_COLOURED;
-	if (status == SEPARATE_OK && look->found.events < look->events)
+		status = SEPARATE_COLOURED;
+	else if (status == SEPARATE_OK && look->found.events < look->events)
 		status = SEPARATE_NO_LAG;
 	look->attempts += status == SEPARATE_OK;
 	if (status == SEPARATE_OK)
