@@ -261,7 +261,8 @@ _TRANSIT = ("time1", "time2", "diameter", "amplitude", "delay", "velocity", "tim
             "sources", "chi2")
 _VERDICTS = ("alone", "overlap", "misfit", "unresolved", "shock", "bubble",
              "impulse", "transient")
-_Transit = _struct(*[(name, c_double) for name in _TRANSIT], ("verdict", c_int))
+_Transit = _struct(*[(name, c_double) for name in _TRANSIT], ("verdict", c_int),
+                   ("diameter_most", c_double))
 _separate_new = _function("wp_separate_new", c_void_p, POINTER(_SeparatePar), POINTER(c_int))
 _separate_free = _function("wp_separate_free", None, c_void_p)
 _separate_push = _function("wp_separate_push", c_int, c_void_p, _array, c_size_t)
@@ -290,13 +291,15 @@ def separate(record, rate, **known):
         elif result != _OK:
             raise Error(_separate_reason(s).decode())
         while _separate_next(s, byref(p)):
-            rows.append(tuple(getattr(p, name) for name in _TRANSIT) + (_VERDICTS[p.verdict],))
+            rows.append(tuple(getattr(p, name) for name in _TRANSIT) +
+                        (_VERDICTS[p.verdict], p.diameter_most))
 
     try:
         for at in range(0, len(record), 65536):
             step(_separate_push(s, record[at:at + 65536], len(record[at:at + 65536])))
         step(_separate_end(s))
-        return np.array(rows, [(name, np.float64) for name in _TRANSIT] + [("verdict", "U10")])
+        return np.array(rows, [(name, np.float64) for name in _TRANSIT] +
+                        [("verdict", "U10"), ("diameter_most", np.float64)])
     finally:
         _separate_free(s)
 

@@ -37,7 +37,7 @@ smallest() {
 }
 near "the smallest size is that of single balls where some pulses overlap" "$(smallest pairs)" "$(smallest '')" 0.1
 for d in 60 100; do
-	sed '/^#/d; s/alone$/overlap/' pairs$d.tsv >crowd$d.tsv
+	sed '/^#/d; s/alone/overlap/' pairs$d.tsv >crowd$d.tsv
 done
 fails "no pulse tells the noise" 1 'no pulse stands alone.*want --noise' \
 	ballcal --balls crowd60.tsv:60um --balls crowd100.tsv:100um --pulse-duration 10ms

@@ -51,8 +51,8 @@ record = np.array([[float(c) for c in line.split()[-2:]] for line in open("s.txt
 table = [line.rstrip("\n").split("\t") for line in open("duet.tsv") if line[0] != "#"]
 found = wearpipe.separate(record, 10e3)
 same = [np.array_equal(found[name], [float(row[k]) for row in table[1:]], equal_nan=True)
-        for k, name in enumerate(table[0][:-1]) if name != "particle"]
-print("separation", len(found) == len(table) - 1 > 0, all(same), list(found["verdict"]) == [row[-1] for row in table[1:]])
+        for k, name in enumerate(table[0]) if name not in ("particle", "verdict")]
+print("separation", len(found) == len(table) - 1 > 0, all(same), list(found["verdict"]) == [row[table[0].index("verdict")] for row in table[1:]])
 import warnings
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")

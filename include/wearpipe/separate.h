@@ -51,6 +51,8 @@ struct wp_transit {
 	double sources; /* particles in that stretch */
 	double chi2;    /* of the stretch per degree of freedom */
 	int verdict;    /* enum wp_verdict */
+	double diameter_most; /* upper limit of the diameter in an unresolved stretch, m
+			       */
 };
 
 /* What is known of the record; 0 where it is to be learned from it or is as in duet(1).

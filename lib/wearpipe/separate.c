@@ -144,7 +144,7 @@ int wp_separate_next(struct wp_separate *s, struct wp_transit *p)
 	*p = (struct wp_transit){ z.time[0], z.time[1], z.diameter, z.amplitude, z.delay,
 		z.velocity, z.time_se[0], z.time_se[1], z.diameter_se, z.amplitude_se,
 		z.delay_se, z.velocity_se, (double)t.section, t.sources, t.chi2,
-		(int)t.verdict };
+		(int)t.verdict, z.most };
 	return 1;
 }
 
