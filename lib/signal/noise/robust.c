@@ -65,8 +65,8 @@ static double step_of(const double *x, size_t n)
 	return isinf(least) ? 0 : least;
 }
 
-/* The same from the root mean square of the differences of each block, which does not
- * jump as their median does where values are coarse: that of the middle block. */
+/* Noise by the root mean square of the differences of each block, that of the middle
+ * block: it does not jump as their median does where values are coarse. */
 static double noise_of_blocks(
 	const double *x, const unsigned char *hidden, size_t n, double *work)
 {
