@@ -104,6 +104,42 @@ static void test_recurring(void)
 	validation_free(v);
 }
 
+/* In groups of three whose velocities differ by up to a third, each of two strong pulses
+ * leaves a weak one 0.7 of its own durations behind it, so that another pulse may be
+ * nearer; transit times are 200 samples. */
+static void test_own_durations(void)
+{
+	enum { GROUPS = 30, EACH = 4 };
+	static struct evidence e[GROUPS * EACH];
+	struct validation *v = validation_new();
+	int missed = 0;
+
+	for (int g = 0; g < GROUPS; g++)
+		for (int k = 0; k < 2; k++) {
+			double u = philox_uniform(
+				23, 0, RNG_PARTICLE, (uint64_t)(2 * g + k));
+			struct evidence strong = { .group = g + 1,
+				.fits = 1,
+				.amplitude = 20,
+				.var = 0.1,
+				.delay = 200 * (0.4 * u - 0.2),
+				.time = 0.4 * k };
+			struct evidence weak = strong;
+
+			weak.amplitude = 2;
+			weak.time += 0.7 * (1 + strong.delay / 200);
+			e[EACH * g + k] = strong;
+			e[EACH * g + 2 + k] = weak;
+		}
+	validation_range(v, 200, -90, 90);
+	validation_test(v, e, GROUPS * EACH);
+	for (int i = 0; i < GROUPS * EACH; i++)
+		missed += !e[i].doubted;
+	ok(missed == 0,
+		"weak pulses at one distance in durations of their own are doubted");
+	validation_free(v);
+}
+
 /* Two thousand groups of two, a third of the weak pulses at one distance. */
 static void test_long(void)
 {
@@ -218,6 +254,7 @@ int main(void)
 	}
 	test_other_velocities();
 	test_recurring();
+	test_own_durations();
 	test_long();
 	test_first_negative(20);
 	test_first_negative(5000);
