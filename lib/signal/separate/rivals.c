@@ -50,7 +50,7 @@ enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 	int found = 0, most, tried;
 
 	most = (int)fmax(fmin(a->m, MOST * (double)a->n / s->cal.duration), 1);
-	if (a->cut && a->m > 2 * most)
+	if (a->cut && !described && a->m > 2 * most)
 		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
 	if (room_for(&s->spikes, &s->spike_room, 2 * a->n, sizeof *s->spikes))
