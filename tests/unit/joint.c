@@ -127,6 +127,34 @@ static void test_bound(struct joint *j, const struct joint_scene *tied)
 		"the standard error of the amplitude is the Cramer-Rao bound");
 }
 
+/* A fit without the errors of the pulses. */
+static void test_adjust(struct joint *j, const struct joint_scene *wide)
+{
+	static double y[2][N];
+	struct joint_pulse p[] = { { .t = 200.3, .delta = 1, .a = 20 },
+		{ .t = 420.7, .delta = 6, .a = 30 } };
+	struct joint_pulse found[JOINT_PULSES_MAX], again[2];
+	struct joint_result r;
+	double chi2 = 0;
+	int m = 0;
+
+	memset(y, 0, sizeof y);
+	for (int i = 0; i < 2; i++)
+		joint_add(wide, &p[i], 1, y[0], y[1], N);
+	joint_fit(j, wide, y[0], y[1], N, found, &m, &r);
+	ok(m == 2, "two pulses are found (%d)", m);
+	for (int i = 0; i < 2; i++)
+		near(found[i].delta, p[i].delta, 1e-3, "and their delays");
+	for (int i = 0; i < 2; i++) {
+		found[i].t += 0.3;
+		again[i] = found[i];
+	}
+	joint_refine(j, wide, y[0], y[1], N, found, 2, &r);
+	joint_adjust(j, wide, y[0], y[1], N, again, 2, &chi2);
+	ok(chi2 == r.chi2 && again[0].t == found[0].t && again[1].a == found[1].a,
+		"without errors the pulses are the same");
+}
+
 /* What is left of a line whose cosine and sine are known at knots with an error of
  * standard deviation sd, with linear interpolation between. */
 static void add_left(
@@ -427,6 +455,7 @@ int main(void)
 	test_clean(j, &s);
 	test_wide(j, &s);
 	test_bound(j, &s);
+	test_adjust(j, &s);
 	test_noisy(j, &s, 1, 0, 0);
 	test_noisy(j, &s, 2, 0, 0);
 	test_noisy(j, &s, 6, 0, 0);

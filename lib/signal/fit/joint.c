@@ -21,6 +21,19 @@ static size_t filter_residual(struct joint *j, size_t stride)
 	return points;
 }
 
+/* Of sign * x[first .. last], the index of the largest; at: that of as many before last,
+ * or less than first. */
+static long largest(const double *x, double sign, long first, long last, long at)
+{
+	if (at >= first)
+		return sign * x[last] > sign * x[at] ? last : at;
+	at = first;
+	for (long i = first + 1; i <= last; i++)
+		if (sign * x[i] > sign * x[at])
+			at = i;
+	return at;
+}
+
 /* The pulse that would reduce chi-square most, except near the positions tried before. */
 static struct candidate search(struct joint *j, const struct candidate *tried, int ntried)
 {
@@ -29,7 +42,7 @@ static struct candidate search(struct joint *j, const struct candidate *tried, i
 	size_t points;
 	double z = 0, least = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
 	long lo = (long)floor(s->delta_min / (double)stride);
-	long hi = (long)ceil(s->delta_max / (double)stride), from, to;
+	long hi = (long)ceil(s->delta_max / (double)stride), from, to, top = -1, low = -1;
 	struct candidate best = { 0 };
 
 	joint_project(j);
@@ -38,12 +51,25 @@ static struct candidate search(struct joint *j, const struct candidate *tried, i
 	from = (long)ceil(fmax(arrival_limit(j, 0), 0) / (double)stride);
 	to = (long)fmin(arrival_limit(j, 1) / (double)stride, (double)points - 1);
 	for (long k = from; k <= to; k++) {
-		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
-			l++) {
-			double here = (j->filter[0][k] + g * j->filter[1][k + l]) * norm;
+		const double *f = j->filter[1];
+		long first = k + lo < 0 ? 0 : k + lo, last = k + hi;
+		double up, down;
+
+		last = last < (long)points ? last : (long)points - 1;
+		if (first > last)
+			continue;
+		top = largest(f, 1, first, last, top);
+		low = largest(f, -1, first, last, low);
+		up = (j->filter[0][k] + g * f[top]) * norm;
+		down = (j->filter[0][k] + g * f[low]) * norm;
+		/* No delay is better than the best one so far. */
+		if (down >= least && up <= fabs(z) && (!s->signs || -down <= fabs(z)))
+			continue;
+		for (long l = first - k; l <= last - k; l++) {
+			double here = (j->filter[0][k] + g * f[k + l]) * norm;
 			int old = 0;
 
-			least = fmin(least, here);
+			least = here < least ? here : least;
 			if ((s->signs ? fabs(here) : here) <= fabs(z))
 				continue;
 			for (int i = 0; i < ntried && !old; i++)
@@ -132,6 +158,21 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	}
 	*m = j->m;
 	finish(j, full, pulses, result);
+	return JOINT_OK;
+}
+
+enum joint_status joint_adjust(struct joint *j, const struct joint_scene *s,
+	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
+	double *chi2)
+{
+	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, m);
+
+	if (status != JOINT_OK)
+		return status;
+	joint_fit_all(j);
+	qsort(j->pulse, (size_t)m, sizeof *j->pulse, by_time);
+	memcpy(pulses, j->pulse, (size_t)m * sizeof *pulses);
+	*chi2 = j->result.chi2;
 	return JOINT_OK;
 }
 

@@ -121,6 +121,10 @@ enum joint_status joint_fit(struct joint *joint, const struct joint_scene *scene
 enum joint_status joint_refine(struct joint *joint, const struct joint_scene *scene,
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
 	struct joint_result *result);
+/* The same without the errors of the pulses and the residual. */
+enum joint_status joint_adjust(struct joint *joint, const struct joint_scene *scene,
+	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
+	double *chi2);
 
 /* Is pulse i of the last fit two that arrive nearly together?  Odds by the share of the
  * smaller one, for one other arrival per duration; scatter is the standard deviation of

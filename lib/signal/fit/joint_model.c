@@ -278,11 +278,11 @@ void joint_project(struct joint *j)
 
 void joint_hide(const struct joint *j, int channel, long first, size_t n, double *x)
 {
-	const unsigned char *hidden = j->scene.hidden[channel];
+	const unsigned char *flag = n > 0 ? j->scene.hidden[channel] : NULL;
+	const unsigned char *begin = flag ? flag + first : NULL, *at = begin;
 
-	for (size_t i = 0; hidden && i < n; i++)
-		if (hidden[first + (long)i])
-			x[i] = 0;
+	while (at && (at = memchr(at, 1, n - (size_t)(at - begin))))
+		x[at++ - begin] = 0;
 }
 
 size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)

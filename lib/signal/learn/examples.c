@@ -145,27 +145,32 @@ enum joint_status examples_refine(struct examples *ex, const struct example *e,
 				       e->n, pulse, e->m, result));
 }
 
-double examples_chi2(struct examples *ex, int keep)
+double examples_chi2(struct examples *ex)
 {
-	double sum = 0;
+	double sum = 0, chi2;
 
 	for (int i = 0; i < ex->count; i++) {
 		struct example *e = &ex->example[i];
-		struct joint_pulse pulse[EXAMPLE_PULSES];
-		struct joint_result result;
 
 		if (e->outlier)
 			continue;
 		if (!may_go_on(ex))
 			return INFINITY;
-		memcpy(pulse, e->pulse, sizeof pulse);
-		if (examples_refine(ex, e, pulse, &result) != JOINT_OK)
+		memcpy(e->trial, e->pulse, sizeof e->trial);
+		if (note_memory(ex, joint_adjust(ex->joint, scene_of(ex, e), e->y1, e->y2,
+					    e->n, e->trial, e->m, &chi2)) != JOINT_OK)
 			return INFINITY;
-		if (keep)
-			memcpy(e->pulse, pulse, sizeof pulse);
-		sum += result.chi2;
+		sum += chi2;
 	}
 	return sum;
+}
+
+void examples_keep(struct examples *ex)
+{
+	for (int i = 0; i < ex->count; i++)
+		if (!ex->example[i].outlier)
+			memcpy(ex->example[i].pulse, ex->example[i].trial,
+				sizeof ex->example[i].pulse);
 }
 
 /* Fewest examples that tell of crosstalk, and the most of it: more is a shock, which

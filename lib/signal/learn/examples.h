@@ -20,6 +20,7 @@ struct example {
 	long long begin; /* index of the first sample */
 	size_t n;
 	struct joint_pulse pulse[EXAMPLE_PULSES];
+	struct joint_pulse trial[EXAMPLE_PULSES]; /* by examples_chi2() */
 	int m;
 	int isolated;  /* 1: hardly longer than one pulse */
 	double excess; /* of chi-square over its degrees of freedom */
@@ -70,8 +71,10 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 double examples_fit(struct examples *ex, double misfit);
 
 /* Chi-square of all examples that are no outliers, with their pulses refined under the
- * present scene; the refined pulses are stored only if keep is 1. */
-double examples_chi2(struct examples *ex, int keep);
+ * present scene; INFINITY if one cannot be. */
+double examples_chi2(struct examples *ex);
+/* Keeps the pulses so refined, of the last chi-square, which was finite. */
+void examples_keep(struct examples *ex);
 
 /* Refines pulse[0 .. e->m) of one example under the present scene. */
 enum joint_status examples_refine(struct examples *ex, const struct example *e,

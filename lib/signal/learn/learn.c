@@ -62,22 +62,26 @@ static double to_least(double below, double middle, double above)
  * on the logarithm, the step shrinking. */
 static void minimise(struct examples *ex, double *parameter, double step, int rounds)
 {
-	double middle = examples_chi2(ex, 1);
+	double middle = examples_chi2(ex);
 
+	if (isfinite(middle))
+		examples_keep(ex);
 	for (int round = 0; round < rounds; round++) {
 		double x = *parameter, below, above, move;
 
 		*parameter = x * exp(-step);
-		below = examples_chi2(ex, 0);
+		below = examples_chi2(ex);
 		*parameter = x * exp(step);
-		above = examples_chi2(ex, 0);
+		above = examples_chi2(ex);
 		move = to_least(below, middle, above);
 		*parameter = x * exp(step * move);
-		above = examples_chi2(ex, 0);
-		if (above < middle)
-			middle = examples_chi2(ex, 1);
-		else
+		above = examples_chi2(ex);
+		if (above < middle) {
+			middle = above;
+			examples_keep(ex);
+		} else {
 			*parameter = x;
+		}
 		step /= 3;
 	}
 }
@@ -112,7 +116,7 @@ static double chi2_of_width(
 	ex->scene.width = exp(log_width);
 	ex->scene.duration /= isnan(par->duration) ? change : 1;
 	ex->scene.gain /= isnan(par->gain) ? change : 1;
-	return examples_chi2(ex, 0);
+	return examples_chi2(ex);
 }
 
 /* Chi-square if the logarithm of the gain changes by this much in what is learned from.
@@ -122,7 +126,7 @@ static double chi2_of_drift(
 {
 	(void)par;
 	ex->drift = change / (2 * ex->middle);
-	return examples_chi2(ex, 0);
+	return examples_chi2(ex);
 }
 
 typedef double chi2_of(const struct calibrate_par *, struct examples *, double);
@@ -135,13 +139,14 @@ static int tune_rare(const struct calibrate_par *par, struct examples *ex, chi2_
 {
 	const double small = 5e-4;
 	const struct examples kept = *ex;
-	double middle = of(par, ex, before), best, now, below, above;
+	double middle = of(par, ex, before), best, now, below, above, none;
 
 	below = of(par, ex, before - step);
 	above = of(par, ex, before + step);
 	now = before + step * to_least(below, middle, above);
 	best = of(par, ex, now);
-	if (of(par, ex, 0) - best > SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
+	none = before == 0 ? middle : of(par, ex, 0);
+	if (none - best > SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
 		of(par, ex, now);
 	else
 		now = 0;
@@ -242,11 +247,15 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 		return SEPARATE_OK;
 	scene_of(c, &ex->scene);
 	examples_fit(ex, EXAMPLES_ROUGH);
+	if (ex->status != SEPARATE_OK)
+		return ex->status;
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	ex->drift = 0;
 	tune(par, ex, 0.1, 3);
 	guess.chi2 = examples_fit(ex, 0.003);
+	if (ex->status != SEPARATE_OK)
+		return ex->status;
 	guess.penalised = ex->penalised;
 	for (int i = 0; i < ex->count; i++)
 		if (ex->example[i].m == 1)

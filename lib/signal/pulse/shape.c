@@ -336,15 +336,21 @@ LANES_CLONES static void sample_inside(const struct shape *shape, double t0, dou
 		lanes4 at = (double)(long)i + (lanes4){ 0, 1, 2, 3 }, x = x0 + rate * at;
 		lanes4_int cell = __builtin_convertvector(x, lanes4_int);
 		lanes4 u = x - __builtin_convertvector(cell, lanes4), c0, c1, c2, c3, y;
-		const double *r0 = c + 4 * cell[0],
-			     *r1 = c + 4 * lesser_int(cell[1], last);
-		const double *r2 = c + 4 * lesser_int(cell[2], last);
-		const double *r3 = c + 4 * lesser_int(cell[3], last);
+		lanes4 r0, r1, r2, r3, even, odd;
 
-		c0 = (lanes4){ r0[0], r1[0], r2[0], r3[0] };
-		c1 = (lanes4){ r0[1], r1[1], r2[1], r3[1] };
-		c2 = (lanes4){ r0[2], r1[2], r2[2], r3[2] };
-		c3 = (lanes4){ r0[3], r1[3], r2[3], r3[3] };
+		memcpy(&r0, c + 4 * cell[0], sizeof r0);
+		memcpy(&r1, c + 4 * lesser_int(cell[1], last), sizeof r1);
+		memcpy(&r2, c + 4 * lesser_int(cell[2], last), sizeof r2);
+		memcpy(&r3, c + 4 * lesser_int(cell[3], last), sizeof r3);
+		/* four rows to four columns */
+		even = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
+		odd = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
+		c0 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
+		c2 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
+		even = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+		odd = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+		c1 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
+		c3 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
 		y = c0 + u * (c1 + u * (c2 + u * c3));
 		store(p + i, &y, m);
 		if (!by_t0 && !by_T)

@@ -13,21 +13,26 @@
  * standard deviations: 300 (2 pi / 20)^4 = 3, that of noise is 8. */
 static const double FOLLOWED = 20;
 
-/* Samples of pulses that may be computed to learn from the beginning of a record: groups
- * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind an estimated low-pass
- * 7.7e8, and known shapes, which have half of it, 4.6e8 of pulses behind a slow low-pass
- * of one pole; a record that pulses do not describe would take more.  And per second of a
- * long record, some second of processor time, for what is tried later.  Separating takes
- * as much at most: of the scenes of tests/matrix/scenes.tsv at 10 kHz none that pulses
- * describe takes more than 4.8e7 per second (dense-350-gauss), bubbles alone take 1.7e8,
- * with many particles among them 5.9e8. */
+/* Samples of pulses that may be computed to learn from the first samples of a record,
+ * and a part of it from fewer than half of SEPARATE_LEARN: groups of six Lorentz pulses
+ * at 30 dB take 7.4e8, of three pulses behind an estimated low-pass 7.7e8, and known
+ * shapes, which have half of it, 4.6e8 of pulses behind a slow low-pass of one pole; a
+ * record that pulses do not describe would take more.  A part for all of SEPARATE_LEARN
+ * refuses one record of 2.3 s at 10 kHz with clipped pulses, in which known shapes take
+ * 2.15e8.  And per second of a long record, some second of processor time, for what is
+ * tried later.  Separating takes as much at most: of the scenes of
+ * tests/matrix/scenes.tsv at 10 kHz none that pulses describe takes more than 4.8e7 per
+ * second (dense-350-gauss), bubbles alone take 1.7e8, with many particles among them
+ * 5.9e8. */
 static const double EFFORT = 1e9, EFFORT_PER_SECOND = 9e7;
 
 double separate_effort(const struct separate *s, double samples)
 {
-	double rate = s->par.rate > 0 ? s->par.rate : 1e4;
+	double rate = s->par.rate > 0 ? s->par.rate : 1e4, all = samples * s->ratio;
+	double most = fmax(EFFORT * fmin(2 * all / SEPARATE_LEARN, 1),
+		EFFORT_PER_SECOND * all / rate);
 
-	return fmax(EFFORT, EFFORT_PER_SECOND * samples * s->ratio / rate);
+	return s->par.effort > 0 ? fmin(s->par.effort, most) : most;
 }
 
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
@@ -262,16 +267,22 @@ static enum separate_status learn_limited(struct separate *s, size_t n, double m
 	return status;
 }
 
-/* Fills s->cal from the n oldest samples, with a share of the work that may be done. */
-static enum separate_status learn_from(struct separate *s, size_t n, double share)
+/* The work that may still be done to learn from the n oldest samples. */
+static double work_left(const struct separate *s, size_t n)
+{
+	return separate_effort(s, (double)(s->buffer[0].begin + (long long)n)) -
+	       s->effort;
+}
+
+/* Fills s->cal from the n oldest samples, with at most so much work. */
+static enum separate_status learn_from(struct separate *s, size_t n, double most)
 {
 	enum separate_status status;
-	double end = (double)(s->buffer[0].begin + (long long)n);
 
 	if (n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
 	separate_review(s);
-	status = learn_limited(s, n, share * (separate_effort(s, end) - s->effort));
+	status = learn_limited(s, n, most);
 	if (status != SEPARATE_OK)
 		return status;
 	if (s->cal.duration >= SECTIONS_SHORTEST)
@@ -304,7 +315,7 @@ static enum separate_status learn_from_means(
 	memcpy(s->buffer, mean, sizeof mean);
 	s->ratio = ratio;
 	n = measured(s, lesser(mean[0].n, separate_learned_means(s, ratio)), &from);
-	status = learn_from(s, from ? 0 : n, share);
+	status = learn_from(s, from ? 0 : n, share * work_left(s, n));
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
 	if (*duration >= SHORT) {
@@ -342,7 +353,7 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
 	if (s->buffer[0].begin < s->averaged)
 		ratio = 1;
 	if (ratio > 1 && !again) {
-		status = learn_from(s, n, FIRST);
+		status = learn_from(s, n, FIRST * work_left(s, n));
 		if (status == SEPARATE_OK && s->cal.duration <= SEPARATE_LONG)
 			return start(s, n);
 		if (status == SEPARATE_OK)
@@ -370,7 +381,7 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
 	}
 	if (status != SEPARATE_OK || s->calibrated)
 		return status;
-	status = learn_from(s, n, 1);
+	status = learn_from(s, n, work_left(s, n));
 	return status == SEPARATE_OK ? start(s, n) : status;
 }
 
@@ -406,7 +417,7 @@ enum separate_status separate_learn_clearly(struct separate *s)
 
 	if (n < s->par.learn)
 		return SEPARATE_OK;
-	status = learn_from(s, n, CLEARLY * (double)n / EFFORT);
+	status = learn_from(s, n, CLEARLY * (double)n);
 	few = status == SEPARATE_NO_LAG && s->cal.attempts == 0;
 	if (status == SEPARATE_OK) {
 		if (is_clear(&s->cal) && s->cal.isolated >= ISOLATED)

@@ -63,6 +63,7 @@ enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 
 		s->scene = plain;
 		s->scene.max_pulses = tried;
+		s->scene.give_up = 1;
 		if (k == VELOCITIES && !separate_is_range_free(s))
 			continue;
 		if (k == VELOCITIES)

@@ -101,6 +101,7 @@ void separate_continue(struct separate *s, const struct separate *last,
 		&c->missing[0], &c->missing[1] };
 	double a[COUNTERS], b[COUNTERS];
 
+	s->par.effort = 0;
 	s->was_foreign = last->was_foreign || foreign;
 	*c = *counted;
 	for (size_t i = 0; i < sizeof in_samples / sizeof *in_samples; i++)
@@ -213,7 +214,8 @@ static enum separate_status take_window(
 	separate_set_gain(s, from);
 	if (s->par.method == SEPARATE_FIT && !s->par.sources &&
 		((cut && s->crowded) ||
-			joint_work(s->joint) > separate_effort(s, (double)from))) {
+			joint_work(s->joint) >
+				separate_effort(s, fmax((double)from, SEPARATE_LEARN)))) {
 		s->window = DENSE;
 		s->carried = 0;
 	}

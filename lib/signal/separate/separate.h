@@ -64,6 +64,8 @@ struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
 	double rate;   /* of the record, Hz, which limits the work; 0: 10 kHz */
+	double effort; /* samples of pulses that may be computed to learn, and to separate
+			  until separate_continue(); 0: what the record allows */
 	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST;
 			  0: SEPARATE_LEARN */
 	int clearly;   /* 1: learn only from what shows the instrument clearly, of pulses
