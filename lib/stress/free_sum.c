@@ -439,6 +439,9 @@ static enum num_status sum_level(
 		.load_stride = (size_t)mx,
 		.scale = 1,
 		.few = WINDOW_FEW,
+		/* To plan 96 points takes as long as a window of 128 thirty times: too
+		 * long where windows of finer points take most of the time. */
+		.twos = cells > 2,
 		.numbers = l->numbers,
 		.want = &l->want,
 		.take = keep_part,

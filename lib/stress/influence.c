@@ -119,11 +119,14 @@ static struct influence element(
 	double side = fmax(p->dx, p->dy), r = sqrt(x * x + y * y + z * z) / side;
 	/* At 1.25 cells and more in place of 1.5 five Gauss points are off by 1e-5 of the
 	 * pressure, from 1.5 on by 1e-6. */
-	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy && z < side;
+	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy;
+	/* From half a side down Gauss points are off by 3e-5 below a cell beside it, which
+	 * is enough for rough elements, and from a whole one on by 5e-6. */
+	int shallow = z < (crowded == CROWD ? 1 : 0.5) * side;
 
 	/* Three points leave about 0.06 / r^6 of the stress, 1e-4 at three cells. */
 	if (r < (crowded == CROWD ? 4 : 3)) {
-		mean_of_patches(p, x, y, z, touches ? crowded : 0, &f);
+		mean_of_patches(p, x, y, z, touches && shallow ? crowded : 0, &f);
 		return f;
 	}
 	for (int j = 0; j < HAT; j++)
