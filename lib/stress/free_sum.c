@@ -232,19 +232,23 @@ static int name_of(const struct free_sum *s, enum source source, double z, int c
 static enum num_status convolve(struct free_sum *s, enum source source, double z,
 	int cells, const struct window *window)
 {
+	/* On the surface the stress of a point load falls with the square of the distance
+	 * in every direction: points of all spacings share one kernel. */
+	int apart = z == 0 && source >= POINT ? 1 : cells;
 	struct kernel k = { .sum = s,
 		.source = source,
-		.dx = cells * s->par.dx,
-		.dy = cells * s->par.dy,
+		.dx = apart * s->par.dx,
+		.dy = apart * s->par.dy,
 		.z = z };
 	struct window w = *window;
 	enum num_status status;
 	double transforms = 0;
 
+	w.scale *= (double)apart * apart / ((double)cells * cells);
 	w.par = &s->par;
 	w.make = make_kernel;
 	w.maker = &k;
-	w.name = name_of(s, source, z, cells);
+	w.name = name_of(s, source, z, apart);
 	w.pool = s->pool;
 	status = window_sum(&w, &s->kept, &transforms);
 	s->work.transforms += transforms;
