@@ -27,8 +27,7 @@ enum {
 	 * within 3 % with 128 to 512 (640 x 640 to 1536 x 1536 cells), with 64 up to 8 %
 	 * more, and with 256 3 % more where 7 % of the cells fail. */
 	NARROWED_FEW = 2 * WINDOW_FEW,
-	COARSEST =
-		3 * OUTER, /* points per side up to which a window does not save time */
+	COARSEST = 64, /* points per side that take no larger plane than a tile does */
 	LEVELS = 20        /* of points, up to 2^20 cells a side */
 };
 
@@ -443,9 +442,9 @@ static enum num_status sum_level(
 		.load_stride = (size_t)mx,
 		.scale = 1,
 		.few = WINDOW_FEW,
-		/* To plan 96 points takes as long as a window of 128 thirty times: too
+		/* To plan other sizes takes as long as ten windows of that of tiles: too
 		 * long where windows of finer points take most of the time. */
-		.twos = cells > 2,
+		.tiles = cells > 2,
 		.numbers = l->numbers,
 		.want = &l->want,
 		.take = keep_part,

@@ -48,16 +48,16 @@ struct tiling {
 };
 
 /* Points of a plane.  Kernels and plans that are kept serve more windows if the sizes are
- * few: 2^k and 3 2^k, or 2^k alone. */
+ * few: 2^k and 3 2^k, or those of tiles and 2^k above. */
 static size_t plane_side(const struct window *w, int points)
 {
-	size_t need = (size_t)points, side = 16;
+	size_t need = (size_t)points, side = w->tiles ? TILE : 16;
 
 	if (w->name == WINDOW_NAMELESS)
 		return 8 * fft_good_size((need + 7) / 8);
 	while (side < need)
 		side *= 2;
-	return 3 * side / 4 >= need && !w->twos ? 3 * side / 4 : side;
+	return 3 * side / 4 >= need && !w->tiles ? 3 * side / 4 : side;
 }
 
 /* A single tile needs zeros behind its nodes only, one of many the loads on both sides.
@@ -76,15 +76,14 @@ static struct cut cut_axis(const struct window *w, int m, int reach)
 	return c;
 }
 
-/* The reach of the kernel, if all points are in reach of each other: one for planes of 2^k
- * and 3 2^k points, the largest that fits there, so that few kernels serve all. */
+/* The reach of the kernel, if all points are in reach of each other: in quarters of the
+ * largest that fits on the plane, so that few kernels serve all. */
 static int kernel_reach(const struct cut *c, int m, int reach)
 {
-	int half = (int)c->points / 2;
+	int quarter = (int)c->points / 8;
 
-	if (c->count != 1 || reach != m - 1)
-		return reach;
-	return reach < 3 * half / 4 ? 3 * half / 4 - 1 : half - 1;
+	return c->count == 1 && reach == m - 1 ? (reach / quarter + 1) * quarter - 1
+					       : reach;
 }
 
 /* A kernel on the plane, negative offsets wrapped around.  On a line of symmetry what
