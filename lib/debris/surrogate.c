@@ -145,17 +145,16 @@ static void add_gradients(
 	size_t next_p = lanes_next(p, 0, nx), next_q = lanes_next(q, 0, nx);
 
 	for (size_t x = 0; x + 1 < nx; x += 2) {
-		int n;
+		int n = x + 2 < nx ? 2 : 1;
 
 		if (next_p < x)
 			next_p = lanes_next(p, x, nx);
 		if (next_q < x)
 			next_q = lanes_next(q, x, nx);
-		if (next_p > x + 2 && next_q > x + 2)
-			x = (lesser(next_p, next_q) - 1) / 2 * 2;
-		if (x + 1 >= nx)
-			break;
-		n = x + 2 < nx ? 2 : 1;
+		if (next_p > x + 2 && next_q > x + 2) {
+			x = (lesser(next_p, next_q) - 1) / 2 * 2 - 2;
+			continue;
+		}
 		lanes a = lanes_load(p + x, n), b = lanes_load(p + x + 1, n),
 		      c = lanes_load(q + x, n), d = lanes_load(q + x + 1, n);
 		lanes gx = (b + d) - (a + c), gy = (d - b) + (c - a);

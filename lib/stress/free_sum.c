@@ -28,7 +28,7 @@ enum {
 	 * more, and with 256 3 % more where 7 % of the cells fail. */
 	NARROWED_FEW = 2 * WINDOW_FEW,
 	COARSEST = 64, /* points per side that take no larger plane than a tile does */
-	LEVELS = 20        /* of points, up to 2^20 cells a side */
+	LEVELS = 20    /* of points, up to 2^20 cells a side */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-4,

@@ -141,8 +141,8 @@ static struct influence element(
 	/* At 1.25 cells and more in place of 1.5 five Gauss points are off by 1e-5 of the
 	 * pressure, from 1.5 on by 1e-6. */
 	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy;
-	/* From half a side down Gauss points are off by 3e-5 below a cell beside it, which
-	 * is enough for rough elements, and from a whole one on by 5e-6. */
+	/* At half a side down Gauss points are off by 3e-5 of the pressure, no more than
+	 * crowded ones of rough elements, at 0.7 by 9e-6. */
 	int shallow = z < (crowded == CROWD ? 1 : 0.5) * side;
 
 	/* Three points leave about 0.06 / r^6 of the stress, 1e-4 at three cells. */

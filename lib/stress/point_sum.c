@@ -601,9 +601,8 @@ static ALWAYS_INLINE void list_each(
 		      y = (float)(at->iy - c->y) * s->dy;
 
 		if (x * x + y * y < near * near)
-			at->element[at->elements++] = (struct element){
-				own - (c->y * across + c->x), c->load
-			};
+			at->element[at->elements++] =
+				(struct element){ own - (c->y * across + c->x), c->load };
 		else
 			list_near(s, at, c->load, x, y);
 	}

@@ -270,13 +270,10 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		volume, particles, particles > 0 ? sum / particles : NAN,
 		particles > 0 ? most : NAN,
 		worn ? fmax(first->depth, second->depth) : NAN,
-		worn ? worn_roughness(c) / c->sq : NAN, fmax(first->wear.stress, second->wear.stress),
-		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
-		0, 0, 0 };
-	enum {
-		GRID = 7,
-		PLAIN = sizeof(row) / sizeof *row - GRID
-	};
+		worn ? worn_roughness(c) / c->sq : NAN,
+		fmax(first->wear.stress, second->wear.stress), first->volume,
+		second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0, 0, 0, 0 };
+	enum { GRID = 7, PLAIN = sizeof(row) / sizeof *row - GRID };
 
 	if (s->grid) {
 		const struct grid_error *g = s->grid;
