@@ -107,13 +107,14 @@ void debris_contact(
 enum debris_status debris_load(struct debris *d, const double *pressure)
 {
 	size_t n = (size_t)d->par.stress.nx * (size_t)d->par.stress.ny;
-	lane_mask pulls = lanes_all(0) < 0;
 
 	if (stress_load(d->stress, pressure))
 		return DEBRIS_NUMBERS;
-	for (size_t i = 0; i < n; i += 2)
-		pulls = lanes_or(pulls, lanes_load(pressure + i, i + 1 < n ? 2 : 1) < 0);
-	return pulls[0] || pulls[1] ? DEBRIS_PULL : DEBRIS_OK;
+	for (size_t i = lanes_next(pressure, 0, n); i < n;
+		i = lanes_next(pressure, i + 1, n))
+		if (pressure[i] < 0)
+			return DEBRIS_PULL;
+	return DEBRIS_OK;
 }
 
 static enum debris_status status_of(enum wear_status status)

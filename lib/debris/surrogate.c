@@ -121,12 +121,14 @@ static struct loaded find_loaded(const double *pressure, size_t cells, double ha
 {
 	struct loaded l = { 0 };
 
+	if (!(hardness > 0))
+		return l;
 	for (size_t i = lanes_next(pressure, 0, cells); i < cells;
 		i = lanes_next(pressure, i + 1, cells)) {
 		double p = pressure[i];
 
 		l.cells += p > 0;
-		l.flowing += p > 0 && hardness > 0 && p >= hardness;
+		l.flowing += p > 0 && p >= hardness;
 	}
 	return l;
 }
@@ -136,12 +138,23 @@ struct gradients {
 	lanes xx, xy, yy;
 };
 
-/* Between two rows. */
+/* Between two rows.  Where no cell is loaded the gradients are zero. */
 static void add_gradients(
 	const double *p, const double *q, size_t nx, struct gradients *sum)
 {
+	size_t next_p = lanes_next(p, 0, nx), next_q = lanes_next(q, 0, nx);
+
 	for (size_t x = 0; x + 1 < nx; x += 2) {
 		int n = x + 2 < nx ? 2 : 1;
+
+		if (next_p < x)
+			next_p = lanes_next(p, x, nx);
+		if (next_q < x)
+			next_q = lanes_next(q, x, nx);
+		if (next_p > x + 2 && next_q > x + 2) {
+			x = (lesser(next_p, next_q) - 1) / 2 * 2 - 2;
+			continue;
+		}
 		lanes a = lanes_load(p + x, n), b = lanes_load(p + x + 1, n),
 		      c = lanes_load(q + x, n), d = lanes_load(q + x + 1, n);
 		lanes gx = (b + d) - (a + c), gy = (d - b) + (c - a);

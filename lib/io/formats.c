@@ -155,13 +155,17 @@ void parts_end(struct parts *p)
 /* The first sample that is not a number or infinite, or n. */
 static size_t first_infinite(const double *x, size_t n)
 {
-	lane_mask bad = lanes_all(0) < 0;
+	lanes sum = lanes_all(0), other = sum; /* nan as soon as one is not finite */
 	size_t i = 0;
 
-	for (; i < n; i += 2)
-		bad = lanes_or(bad,
-			~(lanes_abs(lanes_load(x + i, i + 1 < n ? 2 : 1)) <= DBL_MAX));
-	if (!bad[0] && !bad[1])
+	for (; i + 4 <= n; i += 4) {
+		sum += 0 * lanes_load(x + i, 2);
+		other += 0 * lanes_load(x + i + 2, 2);
+	}
+	for (; i < n; i++)
+		sum += 0 * lanes_load(x + i, 1);
+	sum += other;
+	if (sum[0] == 0 && sum[1] == 0)
 		return n;
 	for (i = 0; isfinite(x[i]);)
 		i++;

@@ -27,9 +27,8 @@ enum {
 	 * within 3 % with 128 to 512 (640 x 640 to 1536 x 1536 cells), with 64 up to 8 %
 	 * more, and with 256 3 % more where 7 % of the cells fail. */
 	NARROWED_FEW = 2 * WINDOW_FEW,
-	COARSEST =
-		3 * OUTER, /* points per side up to which a window does not save time */
-	LEVELS = 20        /* of points, up to 2^20 cells a side */
+	COARSEST = 64, /* points per side that take no larger plane than a tile does */
+	LEVELS = 20    /* of points, up to 2^20 cells a side */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-4,
@@ -232,19 +231,23 @@ static int name_of(const struct free_sum *s, enum source source, double z, int c
 static enum num_status convolve(struct free_sum *s, enum source source, double z,
 	int cells, const struct window *window)
 {
+	/* On the surface the stress of a point load falls with the square of the distance
+	 * in every direction: points of all spacings share one kernel. */
+	int apart = z == 0 && source >= POINT ? 1 : cells;
 	struct kernel k = { .sum = s,
 		.source = source,
-		.dx = cells * s->par.dx,
-		.dy = cells * s->par.dy,
+		.dx = apart * s->par.dx,
+		.dy = apart * s->par.dy,
 		.z = z };
 	struct window w = *window;
 	enum num_status status;
 	double transforms = 0;
 
+	w.scale *= (double)apart * apart / ((double)cells * cells);
 	w.par = &s->par;
 	w.make = make_kernel;
 	w.maker = &k;
-	w.name = name_of(s, source, z, cells);
+	w.name = name_of(s, source, z, apart);
 	w.pool = s->pool;
 	status = window_sum(&w, &s->kept, &transforms);
 	s->work.transforms += transforms;
@@ -439,6 +442,9 @@ static enum num_status sum_level(
 		.load_stride = (size_t)mx,
 		.scale = 1,
 		.few = WINDOW_FEW,
+		/* To plan other sizes takes as long as ten windows of that of tiles: too
+		 * long where windows of finer points take most of the time. */
+		.tiles = cells > 2,
 		.numbers = l->numbers,
 		.want = &l->want,
 		.take = keep_part,

@@ -524,8 +524,8 @@ static void clear_eight(struct loads *to)
 }
 
 /* Load i of a list, which is this far away. */
-static void put_load(const struct point_sum *s, struct loads *list, int i, float load,
-	float x, float y)
+static inline void put_load(const struct point_sum *s, struct loads *list, int i,
+	float load, float x, float y)
 {
 	struct loads *to = &list[i / EIGHT];
 
@@ -578,40 +578,58 @@ static const struct effect *effects_at(struct point_sum *s, int depth)
 	return effects_of(s, depth);
 }
 
-static void list_near(
+/* A load near the point, this far away. */
+static ALWAYS_INLINE void list_near(
 	const struct point_sum *s, struct point *at, float load, float x, float y)
 {
-	float u = at->x - x, v = at->y - y, square = u * u + v * v;
+	float square = x * x + y * y;
 
-	if (at->count % EIGHT == 0)
-		clear_eight(&at->points[at->count / EIGHT]);
-	put_load(s, at->points, at->count++, load, u, v);
+	put_load(s, at->points, at->count++, load, x, y);
 	at->nearest = square < at->nearest ? square : at->nearest;
 }
 
-/* A smallest square, or its cells one by one. */
-static void list_block(const struct point_sum *s, struct point *at, const struct block *b)
+/* The cells of a smallest square one by one. */
+static ALWAYS_INLINE void list_each(
+	const struct point_sum *s, struct point *at, const struct block *b)
 {
-	const float far = (float)(s->careful ? CAREFUL_FAR : FAR) * BLOCK,
-		    near = (float)NEAR;
-	float u = at->x - b->x, v = at->y - b->y;
+	const float near = at->deep ? 0 : (float)NEAR;
+	const int across = 2 * s->around_x + 1, own = offset(s, at->ix, at->iy);
 
-	if (u * u + v * v >= far * far) {
-		list_near(s, at, b->load, b->x, b->y);
-		return;
-	}
 	for (size_t n = s->begin[b->at]; n < s->begin[b->at + 1]; n++) {
 		const struct cell *c = &s->loaded[n];
-		int i = at->ix - c->x, j = at->iy - c->y;
-		float x = (float)i * s->dx, y = (float)j * s->dy;
+		float x = (float)(at->ix - c->x) * s->dx,
+		      y = (float)(at->iy - c->y) * s->dy;
 
-		if (!at->deep && x * x + y * y < near * near)
+		if (x * x + y * y < near * near)
 			at->element[at->elements++] =
-				(struct element){ offset(s, i, j), c->load };
+				(struct element){ own - (c->y * across + c->x), c->load };
 		else
-			list_near(
-				s, at, c->load, centre(c->x, s->dx), centre(c->y, s->dy));
+			list_near(s, at, c->load, x, y);
 	}
+}
+
+/* The smallest squares near the tile, or their cells one by one. */
+static void list_blocks(const struct point_sum *s, struct point *to)
+{
+	const float far = (float)(s->careful ? CAREFUL_FAR : FAR) * BLOCK;
+	const struct tile *tile = to->tile;
+	struct point at = *to; /* the compiler knows that nothing else changes it */
+
+	at.elements = at.count = 0;
+	at.nearest = INFINITY;
+	for (const struct block *b = tile->block; b < tile->block + tile->near; b++) {
+		float u = at.x - b->x, v = at.y - b->y;
+
+		if (u * u + v * v >= far * far)
+			list_near(s, &at, b->load, u, v);
+		else
+			list_each(s, &at, b);
+	}
+	to->elements = at.elements;
+	to->count = at.count;
+	to->nearest = at.nearest;
+	for (; at.count % EIGHT > 0; at.count++)
+		put_load(s, at.points, at.count, 0, 2 * TILE_SIDE, 0);
 }
 
 /* Tiles */
@@ -754,10 +772,7 @@ static void find_point(struct point_sum *s, int ix, int iy, int deep)
 	at->y = centre(iy, s->dy);
 	at->tile = s->careful ? tile_alone(s, ix, iy)
 			      : tile_of(s, ix, iy, (float)(deep ? DEEP_FAR : TILE_FAR));
-	at->elements = at->count = 0;
-	at->nearest = INFINITY;
-	for (int i = 0; i < at->tile->near; i++)
-		list_block(s, at, &at->tile->block[i]);
+	list_blocks(s, at);
 	at->element[at->elements] = (struct element){ 0, 0 };
 	x = at->x - at->tile->x;
 	y = at->y - at->tile->y;

@@ -179,20 +179,17 @@ static void add_to_block(struct stress *s, int x, int y, double load)
  * finite; 0 if a value is not finite. */
 static double unit_of(const double *pressure, size_t n)
 {
-	lanes most = lanes_all(0);
-	lane_mask bad = most < 0;
-	double largest;
+	double largest = 0;
 	int exponent;
 
-	for (size_t i = 0; i < n; i += 2) {
-		lanes p = lanes_abs(lanes_load(pressure + i, i + 1 < n ? 2 : 1));
+	for (size_t i = lanes_next(pressure, 0, n); i < n;
+		i = lanes_next(pressure, i + 1, n)) {
+		double p = fabs(pressure[i]);
 
-		bad = lanes_or(bad, ~(p <= DBL_MAX));
-		most = lanes_max(p, most);
+		if (!(p <= DBL_MAX))
+			return 0;
+		largest = p > largest ? p : largest;
 	}
-	if (bad[0] || bad[1])
-		return 0;
-	largest = fmax(most[0], most[1]);
 	frexp(largest, &exponent);
 	return largest > 0 ? fmax(ldexp(0.5, exponent), DBL_MIN) : 1;
 }

@@ -48,24 +48,24 @@ struct tiling {
 };
 
 /* Points of a plane.  Kernels and plans that are kept serve more windows if the sizes are
- * few: 2^k and 3 2^k. */
-static size_t plane_side(int points, int kept)
+ * few: 2^k and 3 2^k, or those of tiles and 2^k above. */
+static size_t plane_side(const struct window *w, int points)
 {
-	size_t need = (size_t)points, side = 16;
+	size_t need = (size_t)points, side = w->tiles ? TILE : 16;
 
-	if (!kept)
+	if (w->name == WINDOW_NAMELESS)
 		return 8 * fft_good_size((need + 7) / 8);
 	while (side < need)
 		side *= 2;
-	return 3 * side / 4 >= need ? 3 * side / 4 : side;
+	return 3 * side / 4 >= need && !w->tiles ? 3 * side / 4 : side;
 }
 
 /* A single tile needs zeros behind its nodes only, one of many the loads on both sides.
  */
-static struct cut cut_axis(int m, int reach, int kept)
+static struct cut cut_axis(const struct window *w, int m, int reach)
 {
 	int nodes = TILE - 2 * reach;
-	struct cut c = { 1, m, 0, plane_side(m + reach, kept) };
+	struct cut c = { 1, m, 0, plane_side(w, m + reach) };
 
 	if (c.points <= TILE || nodes < TILE / 2)
 		return c;
@@ -76,11 +76,14 @@ static struct cut cut_axis(int m, int reach, int kept)
 	return c;
 }
 
-/* The largest reach that fits on the plane, if all points are in reach of each other: the
- * kernel then depends on the plane alone. */
+/* The reach of the kernel, if all points are in reach of each other: in quarters of the
+ * largest that fits on the plane, so that few kernels serve all. */
 static int kernel_reach(const struct cut *c, int m, int reach)
 {
-	return c->count == 1 && reach == m - 1 ? (int)c->points / 2 - 1 : reach;
+	int quarter = (int)c->points / 8;
+
+	return c->count == 1 && reach == m - 1 ? (reach / quarter + 1) * quarter - 1
+					       : reach;
 }
 
 /* A kernel on the plane, negative offsets wrapped around.  On a line of symmetry what
@@ -579,8 +582,8 @@ enum num_status window_sum(
 {
 	struct tiling t = {
 		.w = w,
-		.x = cut_axis(w->mx, w->reach_x, w->name != WINDOW_NAMELESS),
-		.y = cut_axis(w->my, w->reach_y, w->name != WINDOW_NAMELESS),
+		.x = cut_axis(w, w->mx, w->reach_x),
+		.y = cut_axis(w, w->my, w->reach_y),
 	};
 	size_t tiles = (size_t)t.x.count * (size_t)t.y.count;
 	enum num_status status;

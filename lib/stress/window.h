@@ -32,6 +32,7 @@ struct window {
 	/* Under which the kernel's transforms are kept for later windows that need the
 	 * same kernel, or WINDOW_NAMELESS. */
 	int name;
+	int tiles; /* such transforms are as large as those of tiles, or 2^k times */
 	const double *load; /* times scale, rows of load_stride */
 	size_t load_stride;
 	double scale;

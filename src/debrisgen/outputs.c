@@ -253,6 +253,8 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 	double particles = (double)(first->count + second->count), sum = 0, most = 0;
 	double volume = first->volume + second->volume, k[3];
 	double coefficient = volume * s->hardness / (first->load * s->length);
+	/* a surrogate gives neither depths nor the worn surface */
+	int worn = !s->volumes || s->volumes->exact;
 
 	for (size_t i = 0; i < first->count; i++) {
 		sum += first->particle[i].diameter;
@@ -266,16 +268,12 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 	double row[] = { (double)c->r->realisation, (double)s->number, s->distance,
 		first->load, first->contact, first->max_pressure, first->edge_load,
 		volume, particles, particles > 0 ? sum / particles : NAN,
-		particles > 0 ? most : NAN, fmax(first->depth, second->depth),
-		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
-		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
-		0, 0, 0 };
-	enum {
-		GRID = 7,
-		PLAIN = sizeof(row) / sizeof *row - GRID,
-		DEPTH = 11,
-		ROUGHNESS
-	};
+		particles > 0 ? most : NAN,
+		worn ? fmax(first->depth, second->depth) : NAN,
+		worn ? worn_roughness(c) / c->sq : NAN,
+		fmax(first->wear.stress, second->wear.stress), first->volume,
+		second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0, 0, 0, 0 };
+	enum { GRID = 7, PLAIN = sizeof(row) / sizeof *row - GRID };
 
 	if (s->grid) {
 		const struct grid_error *g = s->grid;
@@ -291,9 +289,6 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		row[PLAIN + 1] = exact ? volume : s->volumes->total.high;
 		row[PLAIN + 2] = exact;
 	}
-	/* a surrogate gives neither depths nor the worn surface */
-	if (s->volumes && !s->volumes->exact)
-		row[DEPTH] = row[ROUGHNESS] = NAN;
 	table_put_row(t, row, s->grid ? PLAIN + GRID : s->volumes ? PLAIN + 3 : PLAIN);
 	table_flush(t);
 }

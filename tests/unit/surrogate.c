@@ -5,6 +5,7 @@
 #include "num/philox.h"
 #include "tap.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -299,8 +300,40 @@ static void test_within(uint64_t surfaces, uint64_t asperities, int left_out, in
 	free(p);
 }
 
+/* Single loads far from each other and on the edges, among cells without any. */
+static void test_scattered(int nx)
+{
+	enum { NY = 23, MOST = 64 };
+	static double p[MOST * NY];
+	struct stress_par par = { .nx = nx, .ny = NY, .dx = 1, .dy = 2 };
+	double xx = 0, xy = 0, yy = 0, worst;
+	struct surrogate_contact c;
+
+	memset(p, 0, sizeof p);
+	for (int k = 0; k < 7; k++)
+		p[(k * k * 97 + k * 31) % (nx * NY)] = 1 + k;
+	p[nx * NY - 1] = 3;
+	for (int y = 0; y + 1 < NY; y++)
+		for (int x = 0; x + 1 < nx; x++) {
+			const double *a = p + y * nx + x, *b = a + nx;
+			double gx = (a[1] + b[1]) - (a[0] + b[0]);
+			double gy = ((b[0] + b[1]) - (a[0] + a[1])) / 2;
+
+			xx += gx * gx;
+			xy += gx * gy;
+			yy += gy * gy;
+		}
+	c = surrogate_contact(&par, p, 0);
+	worst = fmax(fabs(c.property[SURROGATE_LAY] - (xx - yy) / (xx + yy)),
+		fabs(c.property[SURROGATE_OBLIQUE] - 2 * fabs(xy) / (xx + yy)));
+	ok(worst < 1e-14, "gradients of scattered loads, rows of %d cells, to %.0e", nx,
+		worst);
+}
+
 int main(void)
 {
+	test_scattered(63);
+	test_scattered(64);
 	test_change(0.29);
 	test_change(0.35);
 	test_change(0.38);
