@@ -51,7 +51,7 @@ struct place {
 	double last, value, clock;
 };
 
-static const char magic[16] = "aopf state 10\n";
+static const char magic[16] = "aopf state 11\n";
 
 struct units *units_new(int bare)
 {
