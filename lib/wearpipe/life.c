@@ -1,6 +1,6 @@
-#include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
+#include "num/select.h"
 #include "report.h"
 #include <math.h>
 #include <stdlib.h>
@@ -56,13 +56,6 @@ enum wp_status wp_life_observe(struct wp_life *l, double t, double y)
 	return WP_OK;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 enum wp_status wp_life_quantiles(
 	struct wp_life *l, const double *level, double *quantile, int n, double *never)
 {
@@ -72,13 +65,13 @@ enum wp_status wp_life_quantiles(
 		return WP_IMPOSSIBLE;
 	if (bank_draw(l->bank, l->chances, l->last, l->par.threshold, l->life))
 		return WP_NO_MEMORY;
-	qsort(l->life, (size_t)draws, sizeof *l->life, ascending);
+	sort_numbers(l->life, (size_t)draws);
 	while (finite < draws && isfinite(l->life[finite]))
 		finite++;
 	for (int i = 0; i < n; i++) {
 		if (!(level[i] >= 0 && level[i] <= 1))
 			return WP_DOMAIN;
-		quantile[i] = metric_quantile(l->life, (size_t)draws, level[i]);
+		quantile[i] = sorted_quantile(l->life, (size_t)draws, level[i]);
 	}
 	if (never)
 		*never = (double)(draws - finite) / draws;

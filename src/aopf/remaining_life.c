@@ -14,6 +14,7 @@
 #include "life/trend/plateau.h"
 #include "life/trend/rescaled.h"
 #include "num/checksum.h"
+#include "num/select.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -463,7 +464,7 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 	int ends = n, failures = 0;
 
 	for (int i = 0; i < levels.n; i++)
-		*cell++ = metric_quantile(life, (size_t)n, levels.v[i]);
+		*cell++ = sorted_quantile(life, (size_t)n, levels.v[i]);
 	while (ends > 0 && isinf(life[ends - 1]))
 		ends--;
 	*cell++ = (double)(n - ends) / n;
@@ -475,7 +476,7 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 		*cell++ = replacement(life, n, o->now.clock - o->now.first, cost_ratio);
 	if (alarms.n > 0)
 		*cell = o->now.alarm = raise_alarm(
-			o->now.alarm, metric_quantile(life, (size_t)n, levels.v[0]));
+			o->now.alarm, sorted_quantile(life, (size_t)n, levels.v[0]));
 }
 
 /* Draws n remaining lives at the last row, with the same random numbers at every row, so

@@ -3,6 +3,7 @@
 #include "common/quantile_columns.h"
 #include "io/tables.h"
 #include "life/score/metrics.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,7 +81,7 @@ static void put_samples(
 
 static double quantile(const struct forecast_row *row, double level)
 {
-	return row->n ? metric_quantile(row->life, (size_t)row->n, level) : NAN;
+	return row->n ? sorted_quantile(row->life, (size_t)row->n, level) : NAN;
 }
 
 static void put_scores(struct lifetable *t, double time, const struct forecast_row *row)

@@ -3,19 +3,6 @@
 #include "num/select.h"
 #include <math.h>
 
-double metric_quantile(const double *sorted, size_t n, double level)
-{
-	double place = level * (double)(n - 1);
-	size_t i = (size_t)place;
-	double part = place - (double)i;
-
-	if (i + 1 >= n || part == 0)
-		return sorted[i < n ? i : n - 1];
-	if (isinf(sorted[i + 1]))
-		return sorted[i + 1];
-	return sorted[i] + part * (sorted[i + 1] - sorted[i]);
-}
-
 void metric_cut(double *sample, size_t n, double horizon)
 {
 	for (size_t i = 0; i < n; i++)

@@ -19,10 +19,6 @@
 #include "num/status.h"
 #include <stddef.h>
 
-/* Quantile of n >= 1 ascending samples, linear between order statistics at
- * (n - 1) level; the last ones may be INFINITY ("never"). */
-double metric_quantile(const double *sorted, size_t n, double level);
-
 /* Sets the samples beyond the horizon to INFINITY, and sorts. */
 void metric_cut(double *sample, size_t n, double horizon);
 /* Mean of the finite ones of ascending samples, NAN without any; *failed: their number.
