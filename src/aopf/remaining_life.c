@@ -30,7 +30,7 @@ static const char *const models[] = { "average", "linear", "exponential", "power
 static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL, BANK_POWER,
 	BANK_RATE, BANK_SATURATING };
 
-struct outlook_options outlook_options = { .threshold = NAN };
+double outlook_threshold = NAN;
 
 static double after = -INFINITY, horizon, skip;
 static int direction = AUTO, model;
@@ -42,17 +42,14 @@ static double mission = NAN, cost_ratio = NAN;
 static struct opt_list alarms;
 
 struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
-	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
-		DBL_MAX, "Y", "value of y at failure; without it no life is predicted",
-		NULL, 0 },
+	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_threshold, -DBL_MAX, DBL_MAX,
+		"Y", "value of y at failure; without it no life is predicted", NULL, 0 },
 	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"direction towards the threshold; auto: from the first value", directions,
 		0 },
 	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that constitute failure", NULL,
 		0 },
-	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
-		"value of y without degradation, the zero of the grey model", NULL, 0 },
 	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, DBL_MAX, "T",
 		"run-in that the long-term model does not use, from the first row", NULL,
 		0 },
@@ -160,15 +157,14 @@ void outlook_check(int bare)
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
 			die(EXIT_USAGE, "--alarm: times must be descending");
-	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
+	if (fleet_file && (isnan(outlook_threshold) || direction == AUTO))
 		die(EXIT_USAGE,
 			"--fleet requires --threshold and --direction up or down");
-	if (isnan(outlook_options.threshold) &&
-		(bare || opt_any_given(outlook_plant_rows)))
+	if (isnan(outlook_threshold) && (bare || opt_any_given(outlook_plant_rows)))
 		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
 	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
-		if (isnan(outlook_options.threshold) && opt_given(of_lives[i]))
+		if (isnan(outlook_threshold) && opt_given(of_lives[i]))
 			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
 	if ((weights || events_file || covariates_count() > 0 || fleet_file) &&
 		model >= GREY)
@@ -204,7 +200,7 @@ static void read_fleet(
 		table_ratio(table, series_value_column(in), y));
 	if (clock >= 0)
 		table_set_scale(table, clock, table_ratio(table, clock, timeunit_word()));
-	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
+	fleet = fleet_new(outlook_threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in)) {
 		if (series_units(in) > n_fleet_units) {
@@ -286,7 +282,7 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 		needed |= opt_given(timed[i]);
 	timeunit_settle(series_table(in), series_time_column(in), needed);
 	series_scale(in, 1, 1); /* a unit that changes within the table is an error */
-	if (isnan(outlook_options.threshold))
+	if (isnan(outlook_threshold))
 		return;
 	covariates_open(series_table(in));
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
@@ -313,7 +309,7 @@ void outlook_close(void)
 
 void outlook_read(const struct series *in, struct outlook_row *row)
 {
-	if (!isnan(outlook_options.threshold))
+	if (!isnan(outlook_threshold))
 		covariates_read(series_table(in), row->load);
 }
 
@@ -338,7 +334,7 @@ void outlook_free(struct outlook *o)
 /* Prediction begins with the first value, which may determine the direction. */
 static void start(struct outlook *o)
 {
-	struct bank_par par = { .threshold = outlook_options.threshold,
+	struct bank_par par = { .threshold = outlook_threshold,
 		.direction = o->now.direction,
 		.steady = model != AVERAGE,
 		.load = covariates_future(),
@@ -484,18 +480,17 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 static enum num_status draw_lives(const struct outlook *o, int n, double *life)
 {
 	const struct outlook_state *now = &o->now;
-	double threshold = outlook_options.threshold,
-	       worn = threshold - outlook_options.zero;
+	double threshold = outlook_threshold;
 
 	if (model == LITERAL)
 		return adaptive_lives(
-			o->filter, worn, now->direction, LITERAL_STEPS, life);
+			o->filter, threshold, now->direction, LITERAL_STEPS, life);
 	if (o->bank && bank_ready(o->bank))
 		return bank_draw(o->bank, chances, now->clock, threshold, life);
 	if (o->bank || now->grey.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
 	for (int i = 0; i < n; i++)
-		life[i] = grey_life(&now->grey, worn, now->direction,
+		life[i] = grey_life(&now->grey, threshold, now->direction,
 			bank_chance_normal(chances, i, 0),
 			bank_chance_normal(chances, i, 1));
 	return NUM_OK;
@@ -566,8 +561,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	if (now->rows == 0)
 		now->first = in->clock;
 	if (!now->started && !isnan(in->y)) {
-		int up = direction == AUTO ? in->y <= outlook_options.threshold
-					   : direction == UP;
+		int up = direction == AUTO ? in->y <= outlook_threshold : direction == UP;
 
 		now->started = 1;
 		now->direction = up ? 1 : -1;
@@ -577,19 +571,18 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		learn(o, in, filtered);
 	now->rows++;
 	if (!isnan(in->y))
-		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
+		now->beyond = now->direction * (in->y - outlook_threshold) >= 0
 				      ? now->beyond + 1
 				      : 0;
 	now->failed = now->started && now->beyond >= persist;
 	now->healthy += !isnan(in->y) && now->beyond == 0;
 	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
-		now->range = rescaled_range(
-			&now->scale, RESCALED_HALF, outlook_options.threshold);
+		now->range =
+			rescaled_range(&now->scale, RESCALED_HALF, outlook_threshold);
 		now->rescaled = in->t;
 	}
-	believed = !is_rescaled(o) &&
-		   !rescaled_doubtful(&now->scale, outlook_options.threshold);
+	believed = !is_rescaled(o) && !rescaled_doubtful(&now->scale, outlook_threshold);
 	wanted &= believed;
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
@@ -633,10 +626,9 @@ int outlook_settle(const struct outlook *o)
 	const char *unit = o->unit;
 	unsigned long due = 0;
 	int doubtful = !is_rescaled(o) &&
-		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
+		       rescaled_doubtful(&o->now.scale, outlook_threshold),
 	    stuck = o->bank && bank_stuck(o->bank),
-	    stopped =
-		    !stuck && plateau_reached(&o->now.course, outlook_options.threshold),
+	    stopped = !stuck && plateau_reached(&o->now.course, outlook_threshold),
 	    alternates = rescaled_alternates(&o->now.scale),
 	    doubt = check_direction(o) || is_rescaled(o) || doubtful || stuck ||
 		    stopped || alternates;

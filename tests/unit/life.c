@@ -64,7 +64,7 @@ static void test_grey_series(void)
  * errors are those of the grey model itself. */
 static void test_orders(void)
 {
-	struct order_par par = { ORDER_WINDOW, 30, 20 };
+	struct order_par par = { ORDER_WINDOW, 30 };
 	struct order *o = order_new(&par);
 	struct draw *d = draw_new(4, 0, RNG_NOISE);
 	struct grey g = { 0 };
@@ -578,7 +578,7 @@ static void test_decades(void)
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
 static const struct adaptive_par default_filter = { .filter = { 300, 0, 0.5 },
-	.order = { ORDER_WINDOW, 60, 50 },
+	.order = { ORDER_WINDOW, 60 },
 	.process = NAN,
 	.noise = NAN,
 	.seed = 1 };
