@@ -10,6 +10,7 @@ struct wp_life {
 	struct bank_par par;
 	struct bank *bank;
 	struct bank_chances *chances;
+	int draws;
 	double last;   /* time */
 	double life[]; /* one for each draw */
 };
@@ -25,6 +26,7 @@ struct wp_life *wp_life_new(
 	if (!l)
 		return report(status, WP_NO_MEMORY);
 	l->par = (struct bank_par){ .threshold = threshold, .direction = direction };
+	l->draws = draws;
 	l->last = -INFINITY;
 	l->bank = bank_new(&l->par);
 	l->chances = bank_chances_new(draws, seed);
@@ -59,7 +61,7 @@ enum wp_status wp_life_observe(struct wp_life *l, double t, double y)
 enum wp_status wp_life_quantiles(
 	struct wp_life *l, const double *level, double *quantile, int n, double *never)
 {
-	int draws = bank_chances_count(l->chances), finite = 0;
+	int draws = l->draws, finite = 0;
 
 	if (!bank_ready(l->bank))
 		return WP_IMPOSSIBLE;

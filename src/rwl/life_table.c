@@ -50,7 +50,6 @@ struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *pa
 	t->par = *par;
 	t->metrics.par = (struct metrics_par){ .eol = par->eol,
 		.alpha = par->cone,
-		.beta = 0.5,
 		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
 	t->median = NAN;
 	t->out = table_create(NULL, cmd, units, names);

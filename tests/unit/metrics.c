@@ -95,7 +95,7 @@ static void check_quantile(void)
 /* Point predictions of life 100: late by 30 at t = 0, by 15 at 20, by 3 at 90. */
 static void check_sums(void)
 {
-	struct metrics m = { .par = { .eol = 100, .alpha = 0.2, .beta = 0.5 } };
+	struct metrics m = { .par = { .eol = 100, .alpha = 0.2 } };
 	struct metrics_row row;
 	struct metrics_sum s;
 	double pair[2] = { 8, 12 };
@@ -128,9 +128,7 @@ static void check_sums(void)
 /* An infinite median must not make the mean errors of the others infinite. */
 static void check_infinite(void)
 {
-	struct metrics m = {
-		.par = { .eol = 100, .alpha = 0.2, .beta = 0.5, .limit = 1000 }
-	};
+	struct metrics m = { .par = { .eol = 100, .alpha = 0.2, .limit = 1000 } };
 	struct metrics_sum s;
 
 	add_point(&m, 0, INFINITY, 50, INFINITY, NULL);
