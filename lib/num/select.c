@@ -91,6 +91,19 @@ void sort_numbers(double *v, size_t n)
 	qsort(v, n, sizeof *v, ascending);
 }
 
+double sorted_quantile(const double *sorted, size_t n, double level)
+{
+	double place = level * (double)(n - 1);
+	size_t i = (size_t)place;
+	double part = place - (double)i;
+
+	if (i + 1 >= n || part == 0)
+		return sorted[i < n ? i : n - 1];
+	if (isinf(sorted[i + 1]))
+		return sorted[i + 1];
+	return sorted[i] + part * (sorted[i + 1] - sorted[i]);
+}
+
 double median_of_three(double a, double b, double c)
 {
 	return fmax(fmin(a, b), fmin(fmax(a, b), c));

@@ -11,6 +11,9 @@ void select_ranks(double *v, size_t n, const size_t *rank, size_t count);
 
 /* Ascending order; INFINITY may be among them, NAN not. */
 void sort_numbers(double *v, size_t n);
+/* Quantile of n >= 1 ascending values, linear between order statistics at (n - 1) level;
+ * the last ones may be INFINITY. */
+double sorted_quantile(const double *sorted, size_t n, double level);
 double median_of_three(double a, double b, double c);
 
 #endif

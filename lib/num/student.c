@@ -36,3 +36,10 @@ double student_log_constant(double freedom)
 	return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) -
 	       0.5 * log(freedom * M_PI);
 }
+
+double student_square(double deviate, double freedom)
+{
+	double wide = (8 * freedom + 3) / (8 * freedom + 1) * deviate;
+
+	return freedom * expm1(fmin(600, wide * wide / freedom));
+}

@@ -9,4 +9,8 @@ double student_two_sided(double share, long freedom);
  * (1 + t^2 / freedom)^(-(freedom + 1) / 2). */
 double student_log_constant(double freedom);
 
+/* The square of the t that is as rare as a normal deviate of this size (Wallace, Ann.
+ * Math. Stat. 30 (1959) 1124); larger the fewer the degrees of freedom. */
+double student_square(double deviate, double freedom);
+
 #endif

@@ -1,5 +1,4 @@
-/* ziggurat.h - the layers under the normal curve that normals.h and life/particle/draw.h
- * share
+/* ziggurat.h - the layers under the normal curve that normals.h and draw.h share
  *
  * Marsaglia and Tsang (J. Stat. Softw. 5(8), 2000) as repaired by Doornik (2005): the
  * caller takes layer and place u within it from different bits.

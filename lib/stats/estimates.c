@@ -1,5 +1,6 @@
 #include "stats/estimates.h"
 #include "num/rng.h"
+#include "num/select.h"
 #include "num/status.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
@@ -264,8 +265,9 @@ static void put_interval(double *x, long draws, double confidence, struct estima
 	for (long b = 0; b < draws; b++)
 		if (!isnan(x[b]))
 			x[n++] = x[b];
-	out->low = sample_quantile(x, n, 0.5 - 0.5 * confidence);
-	out->high = sample_quantile(x, n, 0.5 + 0.5 * confidence);
+	sort_numbers(x, n);
+	out->low = n > 0 ? sorted_quantile(x, n, 0.5 - 0.5 * confidence) : NAN;
+	out->high = n > 0 ? sorted_quantile(x, n, 0.5 + 0.5 * confidence) : NAN;
 }
 
 enum num_status estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,

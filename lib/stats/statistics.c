@@ -207,13 +207,6 @@ double weibull_density(const struct weibull *w, double x)
 	return k / s * pow(x / s, k - 1) * exp(-t) / window(w->low, w->high, k, s);
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double p = *(const double *)a, q = *(const double *)b;
-
-	return (p > q) - (p < q);
-}
-
 double weibull_distance(
 	const struct weibull *w, const double *x, const double *weight, size_t n)
 {
@@ -465,15 +458,4 @@ struct estimate sample_mean(const struct running *r, double confidence)
 {
 	return t_interval(r->n > 0 ? r->mean : NAN, sqrt(running_variance(r) / r->n),
 		r->n - 1, confidence);
-}
-
-double sample_quantile(double *x, size_t n, double level)
-{
-	double at = level * (double)(n - 1);
-	size_t i = (size_t)at;
-
-	if (n == 0)
-		return NAN;
-	qsort(x, n, sizeof *x, ascending);
-	return i + 1 < n ? x[i] + (at - (double)i) * (x[i + 1] - x[i]) : x[n - 1];
 }

@@ -59,7 +59,4 @@ enum num_status power_fit(
 /* The mean of values, with its interval by Student's t. */
 struct estimate sample_mean(const struct running *r, double confidence);
 
-/* Quantile of n values, which are sorted: linear between order statistics. */
-double sample_quantile(double *x, size_t n, double level);
-
 #endif

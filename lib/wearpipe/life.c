@@ -1,6 +1,6 @@
-#include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
+#include "num/select.h"
 #include "report.h"
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +10,7 @@ struct wp_life {
 	struct bank_par par;
 	struct bank *bank;
 	struct bank_chances *chances;
+	int draws;
 	double last;   /* time */
 	double life[]; /* one for each draw */
 };
@@ -25,6 +26,7 @@ struct wp_life *wp_life_new(
 	if (!l)
 		return report(status, WP_NO_MEMORY);
 	l->par = (struct bank_par){ .threshold = threshold, .direction = direction };
+	l->draws = draws;
 	l->last = -INFINITY;
 	l->bank = bank_new(&l->par);
 	l->chances = bank_chances_new(draws, seed);
@@ -56,29 +58,22 @@ enum wp_status wp_life_observe(struct wp_life *l, double t, double y)
 	return WP_OK;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 enum wp_status wp_life_quantiles(
 	struct wp_life *l, const double *level, double *quantile, int n, double *never)
 {
-	int draws = bank_chances_count(l->chances), finite = 0;
+	int draws = l->draws, finite = 0;
 
 	if (!bank_ready(l->bank))
 		return WP_IMPOSSIBLE;
 	if (bank_draw(l->bank, l->chances, l->last, l->par.threshold, l->life))
 		return WP_NO_MEMORY;
-	qsort(l->life, (size_t)draws, sizeof *l->life, ascending);
+	sort_numbers(l->life, (size_t)draws);
 	while (finite < draws && isfinite(l->life[finite]))
 		finite++;
 	for (int i = 0; i < n; i++) {
 		if (!(level[i] >= 0 && level[i] <= 1))
 			return WP_DOMAIN;
-		quantile[i] = metric_quantile(l->life, (size_t)draws, level[i]);
+		quantile[i] = sorted_quantile(l->life, (size_t)draws, level[i]);
 	}
 	if (never)
 		*never = (double)(draws - finite) / draws;

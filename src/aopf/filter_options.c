@@ -10,15 +10,13 @@ struct filtering filtering = { .particles = 300, .seed = 1 };
 
 static struct opt_choice order = { ORDER_WINDOW, 0 };
 static double share = 0.5, process = NAN, noise = NAN;
-static long largest = 60, window = 50;
+static long largest = 60;
 
 struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample",
 		"order of the grey model, or the rule that selects it", orders, 0 },
 	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
 		"largest order that may be chosen", NULL, 0 },
-	{ 0, "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
-		"number of rows whose forecast errors select the order", NULL, 0 },
 	{ 0, "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
 		"number of particles", NULL, 0 },
 	{ 0, "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
@@ -37,7 +35,7 @@ struct adaptive *filtering_new(int unit)
 	struct adaptive_par par = {
 		.filter = { (size_t)filtering.particles, 0, share },
 		.order = { order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
-			order.word < 0 ? (int)order.value : (int)largest, (int)window },
+			order.word < 0 ? (int)order.value : (int)largest },
 		.process = process,
 		.noise = noise,
 		.seed = (uint64_t)filtering.seed,

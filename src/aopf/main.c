@@ -116,7 +116,7 @@ static char *column_names(void)
 		bare ? "" : " grey prediction state order ess");
 	char *all;
 
-	if (isnan(outlook_options.threshold))
+	if (isnan(outlook_threshold))
 		return names;
 	all = outlook_columns(names);
 	free(names);
@@ -133,7 +133,7 @@ static char *column_units(const struct series *in)
 	filtered = bare ? xstrdup("") : xprintf(" %s %s %s 1 1", y, y, y);
 	units = xprintf("%s%s %s%s", unit_column ? "1 " : "", t, y, filtered);
 	free(filtered);
-	if (isnan(outlook_options.threshold))
+	if (isnan(outlook_threshold))
 		return units;
 	all = outlook_units(units, t);
 	free(units);

@@ -7,25 +7,30 @@
 #include "filter_options.h"
 #include "io/quantities.h"
 #include "io/series.h"
+#include "life/grey/grey.h"
 #include "life/prior/fleet.h"
 #include "life/score/metrics.h"
 #include "life/trend/passage.h"
 #include "life/trend/plateau.h"
-#include "life/trend/predict.h"
 #include "life/trend/rescaled.h"
 #include "num/checksum.h"
+#include "num/select.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { UP, DOWN, AUTO };
-enum { GREY = PREDICT_GREY };
+/* Long-term models: the bank with all coordinates or those of one family, GM(1,1) through
+ * the filtered states, and particles that continue step by step. */
+enum { AVERAGE, GREY = 6, LITERAL };
 static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
 	"saturating", "grey", "literal", NULL };
+static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL, BANK_POWER,
+	BANK_RATE, BANK_SATURATING };
 
-struct outlook_options outlook_options = { .threshold = NAN };
+double outlook_threshold = NAN;
 
 static double after = -INFINITY, horizon, skip;
 static int direction = AUTO, model;
@@ -37,17 +42,14 @@ static double mission = NAN, cost_ratio = NAN;
 static struct opt_list alarms;
 
 struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
-	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
-		DBL_MAX, "Y", "value of y at failure; without it no life is predicted",
-		NULL, 0 },
+	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_threshold, -DBL_MAX, DBL_MAX,
+		"Y", "value of y at failure; without it no life is predicted", NULL, 0 },
 	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"direction towards the threshold; auto: from the first value", directions,
 		0 },
 	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that constitute failure", NULL,
 		0 },
-	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
-		"value of y without degradation, the zero of the grey model", NULL, 0 },
 	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, DBL_MAX, "T",
 		"run-in that the long-term model does not use, from the first row", NULL,
 		0 },
@@ -89,6 +91,9 @@ struct opt outlook_plant_rows[] = {
  * sqrt(0.05 * 0.95 / 500) = 1 %. */
 enum { DRAWS = 500 };
 
+/* Of the literal model: a particle that needs more never reaches the threshold. */
+enum { LITERAL_STEPS = 1000 };
+
 /* An alarm is cleared once the quantile exceeds its level by this factor.  In 20 noisy
  * series of 150 rows with exponential growth and levels of 9 and 3 % of the life, 1, 1.1,
  * 1.25, 1.5 and 2 raise it 185, 123, 83, 31 and 8 times and leave 1753, 1903, 2130, 2753
@@ -121,14 +126,16 @@ static int n_events;
 struct outlook {
 	const char *unit; /* its name */
 	struct adaptive *filter;
-	struct predict *predict; /* NULL before the first value */
+	struct bank *bank; /* NULL before the first value, for GREY and for LITERAL */
 	struct outlook_state {
 		int started, direction;
 		struct rescaled scale;
 		struct plateau course;
+		struct grey_series grey;        /* of the filtered states, for GREY */
 		double factor, range, rescaled; /* of the values, or of the counter, from
 						 * about this time on; 0: none */
 		double first, clock;            /* times of the first and the last row */
+		double from;                    /* of the first in use; NAN: none yet */
 		double heeded;                  /* events up to this time are done */
 		double early;                   /* the last of those without an effect */
 		long rows;
@@ -150,15 +157,14 @@ void outlook_check(int bare)
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
 			die(EXIT_USAGE, "--alarm: times must be descending");
-	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
+	if (fleet_file && (isnan(outlook_threshold) || direction == AUTO))
 		die(EXIT_USAGE,
 			"--fleet requires --threshold and --direction up or down");
-	if (isnan(outlook_options.threshold) &&
-		(bare || opt_any_given(outlook_plant_rows)))
+	if (isnan(outlook_threshold) && (bare || opt_any_given(outlook_plant_rows)))
 		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
 	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
-		if (isnan(outlook_options.threshold) && opt_given(of_lives[i]))
+		if (isnan(outlook_threshold) && opt_given(of_lives[i]))
 			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
 	if ((weights || events_file || covariates_count() > 0 || fleet_file) &&
 		model >= GREY)
@@ -194,7 +200,7 @@ static void read_fleet(
 		table_ratio(table, series_value_column(in), y));
 	if (clock >= 0)
 		table_set_scale(table, clock, table_ratio(table, clock, timeunit_word()));
-	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
+	fleet = fleet_new(outlook_threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in)) {
 		if (series_units(in) > n_fleet_units) {
@@ -276,7 +282,7 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 		needed |= opt_given(timed[i]);
 	timeunit_settle(series_table(in), series_time_column(in), needed);
 	series_scale(in, 1, 1); /* a unit that changes within the table is an error */
-	if (isnan(outlook_options.threshold))
+	if (isnan(outlook_threshold))
 		return;
 	covariates_open(series_table(in));
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
@@ -303,7 +309,7 @@ void outlook_close(void)
 
 void outlook_read(const struct series *in, struct outlook_row *row)
 {
-	if (!isnan(outlook_options.threshold))
+	if (!isnan(outlook_threshold))
 		covariates_read(series_table(in), row->load);
 }
 
@@ -314,39 +320,36 @@ struct outlook *outlook_new(const char *unit, struct adaptive *filter)
 	o->unit = unit;
 	o->filter = filter;
 	o->now.heeded = o->now.early = -INFINITY;
+	o->now.from = NAN;
 	return o;
 }
 
 void outlook_free(struct outlook *o)
 {
 	if (o)
-		predict_free(o->predict);
+		bank_free(o->bank);
 	free(o);
 }
 
 /* Prediction begins with the first value, which may determine the direction. */
 static void start(struct outlook *o)
 {
-	struct predict_par par = {
-		.model = (enum predict_model)model,
-		.bank = { .threshold = outlook_options.threshold,
-			.direction = o->now.direction,
-			.load = covariates_future(),
-			.n_loads = covariates_count() },
-		.zero = outlook_options.zero,
-		.horizon = horizon / timeunit(),
-		.adaptive = o->filter,
-		.draws = (int)filtering.particles,
-		.chances = chances,
-	};
+	struct bank_par par = { .threshold = outlook_threshold,
+		.direction = o->now.direction,
+		.steady = model != AVERAGE,
+		.load = covariates_future(),
+		.n_loads = covariates_count() };
 
+	if (model >= GREY)
+		return;
 	if (fleet)
-		par.bank.more = fleet_shapes(fleet, &par.bank.n_more);
+		par.more = fleet_shapes(fleet, &par.n_more);
+	par.families = families[model] | (fleet ? BANK_OTHER : 0);
 	for (int i = 0; i < n_fleet_units; i++)
 		if (strcmp(fleet_unit[i], o->unit) == 0)
-			par.bank.own = fleet_shape_of(fleet, i);
-	o->predict = predict_new(&par);
-	if (!o->predict)
+			par.own = fleet_shape_of(fleet, i);
+	o->bank = bank_new(&par);
+	if (!o->bank)
 		die(EXIT_RUN, "no memory for the prediction");
 }
 
@@ -354,23 +357,14 @@ static void start(struct outlook *o)
 void outlook_pass(struct outlook *o, struct state *s)
 {
 	state_move(s, &o->now, sizeof o->now);
-	if (!o->predict) {
-		o->now.direction = o->now.direction ? o->now.direction : 1;
+	if (!o->bank)
 		start(o);
-		predict_pass(o->predict, s);
-		if (!o->now.started) {
-			predict_free(o->predict);
-			o->predict = NULL;
-		}
+	if (o->bank)
+		bank_pass(o->bank, s);
+	if (o->now.started)
 		return;
-	}
-	predict_pass(o->predict, s);
-}
-
-/* The bank of a unit; NULL: none yet. */
-static struct bank *bank_of(const struct outlook *o)
-{
-	return o->predict ? predict_bank(o->predict) : NULL;
+	bank_free(o->bank);
+	o->bank = NULL;
 }
 
 static int concerns(const struct event *e, const char *unit)
@@ -386,7 +380,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 
 		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, o->unit))
 			continue;
-		if (!bank_event(bank_of(o), e->what))
+		if (!bank_event(o->bank, e->what))
 			o->now.early = fmax(o->now.early, e->t);
 		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
 		o->now.course = (struct plateau){ 0 };
@@ -400,8 +394,9 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered)
 {
 	struct outlook_state *now = &o->now;
+	double gap = in->clock - now->clock;
 
-	if (now->rows > 0 && in->clock <= now->clock) {
+	if (now->rows > 0 && gap <= 0) {
 		now->standing++; /* no time of wear has passed */
 		return;
 	}
@@ -409,12 +404,18 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	heed_events(o, in);
 	if (!isnan(in->y))
 		plateau_add(&now->course, in->clock, in->y);
-	if (in->clock - now->first >= skip / timeunit())
-		predict_add(o->predict, in->clock, in->y,
-			filtered ? filtered->state + outlook_options.zero : NAN,
-			in->load);
-	else
+	if (in->clock - now->first < skip / timeunit()) {
 		now->skipped++;
+		return;
+	}
+	if (isnan(now->from))
+		now->from = in->clock;
+	if (model == GREY)
+		grey_append(&now->grey, filtered->state, gap);
+	if (!o->bank)
+		return;
+	bank_load(o->bank, in->clock, in->load);
+	bank_add(o->bank, in->clock, in->y);
 }
 
 static int raise_alarm(int standing, double quantile)
@@ -430,13 +431,36 @@ static int raise_alarm(int standing, double quantile)
 	return level;
 }
 
+/* The time at which a unit of this age is best replaced in advance, where a failure costs
+ * ratio times as much (age replacement: Barlow, Hunter, Operations Research 8 (1960) 90),
+ * from n ascending lives; INFINITY: never. */
+static double replacement(const double *life, int n, double age, double ratio)
+{
+	double best = INFINITY, at = INFINITY, area = 0, before = 0;
+
+	/* cost per time of a replacement just before the i-th failure */
+	for (int i = 0; i < n && isfinite(life[i]); i++) {
+		double failed = (double)i / n, cost;
+
+		area += (1 - failed) * (life[i] - before);
+		before = life[i];
+		cost = (1 + (ratio - 1) * failed) / (age + area);
+		if (cost < best) {
+			best = cost;
+			at = life[i];
+		}
+	}
+	/* If the cost still falls at the last failure, no replacement is advised. */
+	return at == before ? INFINITY : at;
+}
+
 /* Fills the cells of a life, ascending draws. */
 static void put_draws(struct outlook *o, const double *life, int n, double *cell)
 {
 	int ends = n, failures = 0;
 
 	for (int i = 0; i < levels.n; i++)
-		*cell++ = metric_quantile(life, (size_t)n, levels.v[i]);
+		*cell++ = sorted_quantile(life, (size_t)n, levels.v[i]);
 	while (ends > 0 && isinf(life[ends - 1]))
 		ends--;
 	*cell++ = (double)(n - ends) / n;
@@ -445,24 +469,47 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 	if (!isnan(mission))
 		*cell++ = (double)failures / n;
 	if (!isnan(cost_ratio))
-		*cell++ = predict_replacement(
-			life, n, o->now.clock - o->now.first, cost_ratio);
+		*cell++ = replacement(life, n, o->now.clock - o->now.first, cost_ratio);
 	if (alarms.n > 0)
 		*cell = o->now.alarm = raise_alarm(
-			o->now.alarm, metric_quantile(life, (size_t)n, levels.v[0]));
+			o->now.alarm, sorted_quantile(life, (size_t)n, levels.v[0]));
+}
+
+/* Draws n remaining lives at the last row, with the same random numbers at every row, so
+ * that successive rows differ only by their data; NUM_DOMAIN while there are too few. */
+static enum num_status draw_lives(const struct outlook *o, int n, double *life)
+{
+	const struct outlook_state *now = &o->now;
+	double threshold = outlook_threshold;
+
+	if (model == LITERAL)
+		return adaptive_lives(
+			o->filter, threshold, now->direction, LITERAL_STEPS, life);
+	if (o->bank && bank_ready(o->bank))
+		return bank_draw(o->bank, chances, now->clock, threshold, life);
+	if (o->bank || now->grey.n < GREY_ORDER_MIN)
+		return NUM_DOMAIN;
+	for (int i = 0; i < n; i++)
+		life[i] = grey_life(&now->grey, threshold, now->direction,
+			bank_chance_normal(chances, i, 0),
+			bank_chance_normal(chances, i, 1));
+	return NUM_OK;
 }
 
 static void foresee(struct outlook *o, double *cell)
 {
-	int n = predict_draws(o->predict);
-	enum num_status status;
-	double *life = malloc((size_t)n * sizeof *life);
+	int n = model == LITERAL ? (int)filtering.particles : DRAWS;
+	double *life = malloc((size_t)n * sizeof *life), longest = horizon / timeunit();
+	enum num_status status = life ? draw_lives(o, n, life) : NUM_MEMORY;
 
-	status = life ? predict_life(o->predict, life) : NUM_MEMORY;
 	if (status == NUM_MEMORY)
 		die(EXIT_RUN, "no memory for %d paths", n);
-	if (status == NUM_OK)
+	if (!(longest > 0))
+		longest = fleet ? INFINITY : 10 * (o->now.clock - o->now.from);
+	if (status == NUM_OK) {
+		metric_cut(life, (size_t)n, longest);
 		put_draws(o, life, n, cell);
+	}
 	free(life);
 }
 
@@ -476,7 +523,7 @@ static void put_failure(struct outlook *o, double *cell)
 
 static void put_factors(const struct outlook *o, double *cell)
 {
-	const struct bank *b = bank_of(o);
+	const struct bank *b = o->bank;
 
 	for (int k = 0; k < covariates_count(); k++)
 		cell[k] = b && bank_ready(b) ? bank_factor(b, k) : NAN;
@@ -484,7 +531,7 @@ static void put_factors(const struct outlook *o, double *cell)
 
 static void put_weights(const struct outlook *o, double *cell)
 {
-	const struct bank *b = bank_of(o);
+	const struct bank *b = o->bank;
 
 	for (int k = 0; k < WEIGHED; k++)
 		cell[k] = b && bank_ready(b) ? bank_weight(b, weighed[k].family) : NAN;
@@ -514,8 +561,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	if (now->rows == 0)
 		now->first = in->clock;
 	if (!now->started && !isnan(in->y)) {
-		int up = direction == AUTO ? in->y <= outlook_options.threshold
-					   : direction == UP;
+		int up = direction == AUTO ? in->y <= outlook_threshold : direction == UP;
 
 		now->started = 1;
 		now->direction = up ? 1 : -1;
@@ -525,19 +571,18 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		learn(o, in, filtered);
 	now->rows++;
 	if (!isnan(in->y))
-		now->beyond = now->direction * (in->y - outlook_options.threshold) >= 0
+		now->beyond = now->direction * (in->y - outlook_threshold) >= 0
 				      ? now->beyond + 1
 				      : 0;
 	now->failed = now->started && now->beyond >= persist;
 	now->healthy += !isnan(in->y) && now->beyond == 0;
 	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
-		now->range = rescaled_range(
-			&now->scale, RESCALED_HALF, outlook_options.threshold);
+		now->range =
+			rescaled_range(&now->scale, RESCALED_HALF, outlook_threshold);
 		now->rescaled = in->t;
 	}
-	believed = !is_rescaled(o) &&
-		   !rescaled_doubtful(&now->scale, outlook_options.threshold);
+	believed = !is_rescaled(o) && !rescaled_doubtful(&now->scale, outlook_threshold);
 	wanted &= believed;
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
@@ -556,7 +601,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
  * bad or the threshold had been passed before, and if the trends recede. */
 static int check_direction(const struct outlook *o)
 {
-	const struct bank *b = bank_of(o);
+	const struct bank *b = o->bank;
 	const char *unit = o->unit;
 
 	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
@@ -581,10 +626,9 @@ int outlook_settle(const struct outlook *o)
 	const char *unit = o->unit;
 	unsigned long due = 0;
 	int doubtful = !is_rescaled(o) &&
-		       rescaled_doubtful(&o->now.scale, outlook_options.threshold),
-	    stuck = bank_of(o) && bank_stuck(bank_of(o)),
-	    stopped =
-		    !stuck && plateau_reached(&o->now.course, outlook_options.threshold),
+		       rescaled_doubtful(&o->now.scale, outlook_threshold),
+	    stuck = o->bank && bank_stuck(o->bank),
+	    stopped = !stuck && plateau_reached(&o->now.course, outlook_threshold),
 	    alternates = rescaled_alternates(&o->now.scale),
 	    doubt = check_direction(o) || is_rescaled(o) || doubtful || stuck ||
 		    stopped || alternates;
@@ -675,8 +719,8 @@ void outlook_count(struct outlook *o)
 	stats_add("rows_skipped", (double)o->now.skipped);
 	stats_add("rows_standing", (double)o->now.standing);
 	stats_add("events", (double)o->now.events);
-	if (bank_of(o)) {
-		struct bank_counts c = bank_counts(bank_of(o));
+	if (o->bank) {
+		struct bank_counts c = bank_counts(o->bank);
 
 		stats_add("outliers_of_wear", (double)c.outliers);
 		stats_add("shifts", (double)c.shifts);

@@ -19,12 +19,9 @@
 #include "num/state.h"
 #include <stdint.h>
 
-/* Values of the options. */
-extern struct outlook_options {
-	double threshold; /* nan: there is no life to predict, nor a call of what follows
-			   */
-	double zero;      /* value of y without any degradation */
-} outlook_options;
+/* The value of the option; nan: there is no life to predict, nor a call of what follows.
+ */
+extern double outlook_threshold;
 
 /* For OPT_TABLE: failure; prediction; maintenance decisions. */
 extern struct opt outlook_end_rows[], outlook_model_rows[], outlook_plant_rows[];

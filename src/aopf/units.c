@@ -51,7 +51,7 @@ struct place {
 	double last, value, clock;
 };
 
-static const char magic[16] = "aopf state 10\n";
+static const char magic[16] = "aopf state 11\n";
 
 struct units *units_new(int bare)
 {
@@ -71,7 +71,7 @@ static struct machine *add_unit(struct units *units, int number, const char *nam
 	u->clock = -INFINITY;
 	if (!units->bare)
 		u->filter = filtering_new(number);
-	if (!isnan(outlook_options.threshold))
+	if (!isnan(outlook_threshold))
 		u->outlook = outlook_new(u->name, u->filter);
 	units->unit = xrealloc(units->unit, (size_t)units->n + 1, sizeof *units->unit);
 	return units->unit[units->n++] = u;
@@ -187,23 +187,21 @@ int unit_takes(
 
 int unit_cells(int bare)
 {
-	return (bare ? 0 : FILTERED) +
-	       (isnan(outlook_options.threshold) ? 0 : outlook_cells());
+	return (bare ? 0 : FILTERED) + (isnan(outlook_threshold) ? 0 : outlook_cells());
 }
 
 void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 {
-	double zero = outlook_options.zero;
 	struct adaptive_row row;
 
 	u->rows++;
 	u->last = in->t;
 	u->value = in->y;
 	if (u->filter) {
-		adaptive_step(u->filter, in->t, in->y - zero, &row);
-		*cell++ = row.grey + zero;
-		*cell++ = row.prediction + zero;
-		*cell++ = row.state + zero;
+		adaptive_step(u->filter, in->t, in->y, &row);
+		*cell++ = row.grey;
+		*cell++ = row.prediction;
+		*cell++ = row.state;
 		*cell++ = row.order;
 		*cell++ = row.ess;
 	}

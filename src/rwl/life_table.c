@@ -3,6 +3,7 @@
 #include "common/quantile_columns.h"
 #include "io/tables.h"
 #include "life/score/metrics.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -49,7 +50,6 @@ struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *pa
 	t->par = *par;
 	t->metrics.par = (struct metrics_par){ .eol = par->eol,
 		.alpha = par->cone,
-		.beta = 0.5,
 		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
 	t->median = NAN;
 	t->out = table_create(NULL, cmd, units, names);
@@ -80,7 +80,7 @@ static void put_samples(
 
 static double quantile(const struct forecast_row *row, double level)
 {
-	return row->n ? metric_quantile(row->life, (size_t)row->n, level) : NAN;
+	return row->n ? sorted_quantile(row->life, (size_t)row->n, level) : NAN;
 }
 
 static void put_scores(struct lifetable *t, double time, const struct forecast_row *row)

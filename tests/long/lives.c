@@ -13,9 +13,9 @@
  * path has a random length, noise, offset, range, direction and unit of time.
  */
 #include "../unit/tap.h"
-#include "life/particle/draw.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
+#include "num/draw.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
 #include "life/prior/fleet.h"
-#include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
 #include "num/select.h"
@@ -65,7 +64,7 @@ static void test_grey_series(void)
  * errors are those of the grey model itself. */
 static void test_orders(void)
 {
-	struct order_par par = { ORDER_WINDOW, 30, 20 };
+	struct order_par par = { ORDER_WINDOW, 30 };
 	struct order *o = order_new(&par);
 	struct draw *d = draw_new(4, 0, RNG_NOISE);
 	struct grey g = { 0 };
@@ -160,7 +159,7 @@ static double life_of(
 	bank_chances_free(chances);
 	draw_free(d);
 	sort_numbers(life, DRAWS);
-	return metric_quantile(life, DRAWS, level);
+	return sorted_quantile(life, DRAWS, level);
 }
 
 static double median_life(int n, double (*f)(int k, double y), double gap, int at)
@@ -266,7 +265,7 @@ static void test_few_rows(void)
 		bank_add(b, k, y[k]);
 	bank_draw(b, chances, ROWS - 1, 1, life);
 	sort_numbers(life, DRAWS);
-	ok(metric_quantile(life, DRAWS, 0.05) < 1,
+	ok(sorted_quantile(life, DRAWS, 0.05) < 1,
 		"two rows of steep wear after eleven others may go on to the end");
 	/* creep in three stages whose end, at 14, is one row away */
 	bank_free(b);
@@ -277,7 +276,7 @@ static void test_few_rows(void)
 				0.5 * expm1(k * 10 / 14.0) / expm1(10));
 	bank_draw(b, chances, 13, 1, life);
 	sort_numbers(life, DRAWS);
-	ok(metric_quantile(life, DRAWS, 0.05) < 1,
+	ok(sorted_quantile(life, DRAWS, 0.05) < 1,
 		"a third stage of creep is seen in fourteen rows");
 	bank_free(b);
 	bank_chances_free(chances);
@@ -317,8 +316,8 @@ static void test_readings_rounded_down(void)
 				continue;
 			bank_draw(b, chances, k, 1, life);
 			sort_numbers(life, DRAWS);
-			late += metric_quantile(life, DRAWS, 0.05) > n - k;
-			early += metric_quantile(life, DRAWS, 0.95) < n - k;
+			late += sorted_quantile(life, DRAWS, 0.05) > n - k;
+			early += sorted_quantile(life, DRAWS, 0.95) < n - k;
 			rows++;
 		}
 		bank_free(b);
@@ -533,8 +532,8 @@ static void test_bursts(void)
 			}
 		bank_draw(b, chances, t, 1, life);
 		off += fabs(median(life, DRAWS) - (1 - t)) / UNITS;
-		inside += metric_quantile(life, DRAWS, 0.05) <= 1 - t &&
-			  metric_quantile(life, DRAWS, 0.95) >= 1 - t;
+		inside += sorted_quantile(life, DRAWS, 0.05) <= 1 - t &&
+			  sorted_quantile(life, DRAWS, 0.95) >= 1 - t;
 		bank_free(b);
 		draw_free(d);
 	}
@@ -579,7 +578,7 @@ static void test_decades(void)
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
 static const struct adaptive_par default_filter = { .filter = { 300, 0, 0.5 },
-	.order = { ORDER_WINDOW, 60, 50 },
+	.order = { ORDER_WINDOW, 60 },
 	.process = NAN,
 	.noise = NAN,
 	.seed = 1 };
@@ -707,8 +706,8 @@ static int ends_inside(double (*curve)(double), int rows, int read, double noise
 			bank_add(b, k, curve((double)k / rows) + noise * draw_normal(d));
 		bank_draw(b, chances, read, par.threshold, life);
 		median(life, DRAWS); /* sorts */
-		early = metric_quantile(life, DRAWS, 0.05);
-		late = metric_quantile(life, DRAWS, 0.95);
+		early = sorted_quantile(life, DRAWS, 0.05);
+		late = sorted_quantile(life, DRAWS, 0.95);
 		inside += early <= rows - read && rows - read <= late;
 		*width += (late - early) / 20;
 		bank_free(b);
@@ -768,8 +767,8 @@ static double width_of_wander(double wander)
 					0.005 * draw_normal(d));
 		bank_draw(b, chances, HALF, 1, life);
 		median(life, DRAWS); /* sorts */
-		sum += metric_quantile(life, DRAWS, 0.95) -
-		       metric_quantile(life, DRAWS, 0.05);
+		sum += sorted_quantile(life, DRAWS, 0.95) -
+		       sorted_quantile(life, DRAWS, 0.05);
 		bank_free(b);
 		draw_free(d);
 	}

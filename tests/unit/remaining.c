@@ -1,5 +1,5 @@
 /* remaining - first passages, thresholds and the rate followed through noise */
-#include "life/pair/paths.h"
+#include "num/passage.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>
@@ -23,7 +23,7 @@ static void check_gamma(double left, double mean, double variance)
 	double worst = 0;
 
 	for (int i = 0; i < N; i++)
-		x[i] = remaining_gamma(left, mean, variance, rng);
+		x[i] = gamma_passage(left, mean, variance, rng);
 	qsort(x, N, sizeof *x, compare);
 	for (int i = 0; i < N; i++) {
 		double f = gsl_cdf_gamma_Q(
@@ -43,23 +43,23 @@ static void check_passages(void)
 {
 	gsl_rng *rng = rng_new(1, 0, RNG_LIFE);
 
-	near(remaining_constant(6, 2), 3, 0, "the time at a constant rate is right");
-	ok(isinf(remaining_constant(6, 0)) && isinf(remaining_constant(6, -1)),
+	near(gamma_passage(6, 2, 0, NULL), 3, 0, "the time at a constant rate is right");
+	ok(isinf(gamma_passage(6, 0, 0, NULL)) && isinf(gamma_passage(6, -1, 0, NULL)),
 		"without wear there is no failure");
-	ok(remaining_constant(0, 2) == 0 && remaining_constant(-1, 0) == 0,
+	ok(gamma_passage(0, 2, 0, NULL) == 0 && gamma_passage(-1, 0, 0, NULL) == 0,
 		"a threshold that is reached leaves nothing");
 	check_gamma(50, 1, 1);
 	check_gamma(1, 1, 4);
 	check_gamma(0.3, 1, 0.25);
 	check_gamma(1e-14, 1e-15, 1e-32);
-	near(remaining_gamma(50, 2, 0, rng), 25, 0,
+	near(gamma_passage(50, 2, 0, rng), 25, 0,
 		"without variance the passage is that of the constant rate");
-	near(remaining_gamma(1e6, 1, 1e-12, rng), 1e6, 1e-3,
+	near(gamma_passage(1e6, 1, 1e-12, rng), 1e6, 1e-3,
 		"for many steps the passage is that of the mean rate");
-	ok(remaining_gamma(0, 1, 1, rng) == 0 && isinf(remaining_gamma(1, 0, 1, rng)) &&
-			isinf(remaining_gamma(INFINITY, 1, 1, rng)),
+	ok(gamma_passage(0, 1, 1, rng) == 0 && isinf(gamma_passage(1, 0, 1, rng)) &&
+			isinf(gamma_passage(INFINITY, 1, 1, rng)),
 		"a passage is 0 where the threshold is reached and infinite where there is no wear");
-	ok(remaining_gamma(1, 1e-200, 1e200, rng) >= 0,
+	ok(gamma_passage(1, 1e-200, 1e200, rng) >= 0,
 		"a shape that underflows does not loop");
 	gsl_rng_free(rng);
 }

@@ -183,8 +183,6 @@ static void test_samples(void)
 	/* Student's t of three degrees of freedom: 3.182446. */
 	near(e.high, 2.5 + 3.182446305284263 * sqrt(5. / 12), 1e-9,
 		"the interval of the mean is right");
-	near(sample_quantile(x, 4, 0.5), 2.5, 0, "the median is right");
-	near(sample_quantile(x, 4, 1), 4, 0, "the largest value is right");
 }
 
 int main(void)

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { PERIOD = 8 }; /* rows between two updates of a full window */
-
 /* Where most residuals are 0, as with rounded values, so is their median; the root mean
  * square is used instead. */
 static double spread(const struct noise *n, int count)
@@ -30,9 +28,7 @@ void noise_add(struct noise *n, double y, double gap)
 
 		n->residual[k % NOISE_WINDOW] =
 			fabs(n->y[1] - line) / sqrt(1 + w * w + (1 - w) * (1 - w));
-		if (k < NOISE_WINDOW || k % PERIOD == 0)
-			n->scale = spread(
-				n, k + 1 < NOISE_WINDOW ? (int)k + 1 : NOISE_WINDOW);
+		n->scale = spread(n, k + 1 < NOISE_WINDOW ? (int)k + 1 : NOISE_WINDOW);
 	}
 	n->y[0] = n->y[1];
 	n->y[1] = y;

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { WINDOW = 50 }; /* rows over which errors are averaged */
+
 struct order {
 	struct order_par par;
 	struct order_state {
@@ -16,7 +18,7 @@ struct order {
 		double y, gap; /* since the one before */
 	} * last;              /* [largest], a ring */
 	struct grey *fit;      /* [largest + 1], of the points that end at the newest */
-	double *error;         /* [window][largest + 1] squared errors of the last rows */
+	double *error;         /* [WINDOW][largest + 1] squared errors of the last rows */
 };
 
 struct order *order_new(const struct order_par *par)
@@ -29,7 +31,7 @@ struct order *order_new(const struct order_par *par)
 	o->par = *par;
 	o->last = calloc((size_t)par->largest, sizeof *o->last);
 	o->fit = calloc(orders, sizeof *o->fit);
-	o->error = calloc(orders * (size_t)par->window, sizeof *o->error);
+	o->error = calloc(orders * WINDOW, sizeof *o->error);
 	if (o->last && o->fit && o->error)
 		return o;
 	order_free(o);
@@ -53,7 +55,7 @@ void order_pass(struct order *o, struct state *s)
 	state_move(s, &o->now, sizeof o->now);
 	state_move(s, o->last, (size_t)o->par.largest * sizeof *o->last);
 	state_move(s, o->fit, orders * sizeof *o->fit);
-	state_move(s, o->error, orders * (size_t)o->par.window * sizeof *o->error);
+	state_move(s, o->error, orders * WINDOW * sizeof *o->error);
 }
 
 static int orders_now(const struct order *o)
@@ -64,7 +66,7 @@ static int orders_now(const struct order *o)
 /* Squared errors of all orders at a row of the last. */
 static double *errors_at(const struct order *o, long row)
 {
-	return o->error + (size_t)(row % o->par.window) * ((size_t)o->par.largest + 1);
+	return o->error + (size_t)(row % WINDOW) * ((size_t)o->par.largest + 1);
 }
 
 /* Errors of the forecasts made for the row just taken, from the fits before it. */
@@ -101,7 +103,7 @@ static int rows_compared(const struct order *o)
 {
 	long half = o->now.rows / 2;
 
-	return half < o->par.window ? (int)half : o->par.window;
+	return half < WINDOW ? (int)half : WINDOW;
 }
 
 /* Order p has made its first forecast for row p. */

@@ -6,8 +6,8 @@
  * best where no exponential describes the series, as with rows at a constant ratio of
  * their ages.  Rules:
  *
- *   window    smallest mean squared error over the last rows, all orders over the same
- *             rows
+ *   window    smallest mean squared error over the last 50 rows at most, all orders over
+ *             the same rows
  *   insample  smallest mean squared residual of the fit itself, from order 4 on
  *   fixed     always the largest order
  */
@@ -21,7 +21,6 @@ enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_FIXED };
 struct order_par {
 	enum order_rule rule;
 	int largest; /* largest order P >= 4, or the fixed order */
-	int window;  /* rows over which errors are averaged, >= 1 */
 };
 
 struct order;

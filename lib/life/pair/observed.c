@@ -22,7 +22,6 @@ void observed_begin(struct observed *o, struct moment m)
 	o->n_kept = 0;
 	o->passed = 0;
 	o->every = 1;
-	o->begun = 1;
 }
 
 /* Every second one of those kept goes when there is no more room. */
@@ -45,7 +44,7 @@ void observed_add(struct observed *o, struct moment m, double value)
 {
 	double dt;
 
-	if (!o->begun)
+	if (o->every == 0)
 		observed_begin(o, m);
 	dt = m.t - o->last.t;
 	if (dt > 0 || o->n_kept == 0)
@@ -62,7 +61,7 @@ void observed_add(struct observed *o, struct moment m, double value)
 
 double observed_gap(const struct observed *o)
 {
-	return o->begun ? o->last.gap : NAN;
+	return o->every > 0 ? o->last.gap : NAN;
 }
 
 double observed_rate(const struct observed *o, enum rate_rule rule, const double z[2])

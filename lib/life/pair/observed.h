@@ -30,13 +30,12 @@ enum { OBSERVED_KEPT = 17 };
 
 /* All 0 at first. */
 struct observed {
-	int begun;
 	long n; /* observations */
 	struct moment first, before,
 		last; /* of the rates; different times but at first */
 	/* Observations since the start of the rates, one of every so many. */
 	struct moment kept[OBSERVED_KEPT];
-	long every, passed;
+	long every, passed; /* every 0: none yet */
 	int n_kept;
 	struct grey_series grey; /* of the observations at times of their own */
 };

@@ -1,5 +1,6 @@
 /* paths.c - see paths.h */
 #include "life/pair/paths.h"
+#include "num/passage.h"
 #include "num/rng.h"
 #include "num/select.h"
 #include <gsl/gsl_randist.h>
@@ -12,59 +13,6 @@ struct paths {
 	double mean;       /* of the component per step, by all fragments */
 	gsl_rng *rng;
 };
-
-double remaining_constant(double left, double rate)
-{
-	if (!(left > 0))
-		return 0;
-	return rate > 0 ? left / rate : INFINITY;
-}
-
-/* Largest shape: the relative scatter of the passage is 1e-7 there, and beyond it is
- * neglected. */
-static const double shape_max = 1e14;
-
-double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
-{
-	double shape, scale, low = 0, high, worn = 0, next;
-
-	if (!(left > 0))
-		return 0;
-	if (!(mean > 0))
-		return INFINITY;
-	shape = mean * mean / variance; /* of one unit of time */
-	scale = variance / mean;
-	high = left / mean;
-	if (!(variance > 0) || !(shape * high < shape_max))
-		return high;
-	if (!(shape > 0) || !isfinite(scale))
-		return INFINITY; /* all wear comes in jumps that almost never happen */
-	/* next: wear at time high */
-	next = gsl_ran_gamma(rng, shape * high, scale);
-	while (next < left) {
-		if (!isfinite(2 * high))
-			return INFINITY;
-		worn = next;
-		next += gsl_ran_gamma(rng, shape * high, scale);
-		low = high;
-		high *= 2;
-	}
-	/* wear at low is below left, wear at high (next) is not */
-	while (high - low > 1e-6 * high) {
-		double half = (high - low) / 2;
-		double part = gsl_ran_beta(rng, shape * half, shape * half);
-		double middle = worn + (next - worn) * part;
-
-		if (middle < left) {
-			worn = middle;
-			low += half;
-		} else {
-			next = middle;
-			high -= half;
-		}
-	}
-	return high;
-}
 
 /* A gamma variate of given mean and variance; the mean where the variance is 0. */
 static double draw_rate(double mean, double variance, gsl_rng *rng)
@@ -163,18 +111,17 @@ int paths_rates(const struct paths *e, const double *level, int n, double *rate)
 	return 1;
 }
 
-/* Time in which path i opens the gap by left, in steps of tau. */
+/* Time in which path i opens the gap by left, in steps of tau: at a constant rate (4-29),
+ * or at one that changes from step to step about its mean (4-28). */
 static double wear_out(struct paths *e, long i, double left, double tau)
 {
 	const struct partition_wear *w = &e->path[i].wear;
 
 	if (left <= 0)
 		return 0;
-	left *= e->par.area;
-	if (e->par.rule == RATE_MEAN)
-		return tau * remaining_constant(left, w->mean);
 	rng_reset(e->rng, e->par.seed, e->par.first + (uint32_t)i, RNG_LIFE);
-	return tau * remaining_gamma(left, w->mean, w->step_variance, e->rng);
+	return tau * gamma_passage(left * e->par.area, w->mean,
+			     e->par.rule == RATE_MEAN ? 0 : w->step_variance, e->rng);
 }
 
 /* Time from t to the end of the step in which large particles become too many. */
@@ -197,7 +144,7 @@ long paths_predict(struct paths *e, const struct observed *o, const double *pass
 		     : isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
 		return 0;
 	if (!filtered && !e->path && exact) {
-		life[0] = remaining_constant(left, rate);
+		life[0] = gamma_passage(left, rate, 0, NULL);
 		return 1;
 	}
 	for (long i = 0; i < e->par.count; i++) {
@@ -218,7 +165,7 @@ long paths_predict(struct paths *e, const struct observed *o, const double *pass
 		else if (e->path)
 			life[i] = wear_out(e, i, here, tau);
 		else
-			life[i] = remaining_constant(here, rate);
+			life[i] = gamma_passage(here, rate, 0, NULL);
 		if (e->path && !isnan(e->par.critical))
 			life[i] = fmin(life[i],
 				until_large(e->path[i].large_step, tau, o->last.t));

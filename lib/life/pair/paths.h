@@ -71,14 +71,4 @@ int paths_rates(const struct paths *e, const double *level, int n, double *rate)
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double *life);
 
-/* Time to wear volume left at a constant rate (4-29); never for rate <= 0.  Any unit of
- * time and volume. */
-double remaining_constant(double left, double rate);
-/* The same where the rate changes from step to step about its mean (4-28): first
- * passage of a gamma process, whose increments over one unit of time have the given
- * mean and variance and are never negative (van Noortwijk, Reliab. Eng. Syst. Saf. 94,
- * 2009).  Exact in distribution to a relative 1e-6, at a cost independent of the number
- * of steps: the path is doubled until it is past, then bisected by beta bridges. */
-double remaining_gamma(double left, double mean, double variance, gsl_rng *rng);
-
 #endif

@@ -12,88 +12,80 @@ static const double FAR = 700;
 struct filter {
 	struct filter_par par;
 	struct draw *draw;
-	double *x;          /* [depth][N], a ring */
-	uint32_t *ancestor; /* [depth][N]: of each state of the next step */
+	double *x;          /* [depth][N], a ring; the arrays below are behind it */
+	double *weight;     /* [N] */
 	size_t *count;      /* [depth]: states that still have descendants */
-	double *weight;
-	uint32_t *kept;
-	int newest, filled;
-	double sum; /* of weight */
-	struct filter_now now;
+	uint32_t *ancestor; /* [depth][N]: of each state of the next step */
+	uint32_t *kept;     /* [N] */
+	struct filter_state {
+		int newest, filled;
+		double sum; /* of weight */
+		struct filter_now now;
+	} at;
 };
+
+/* Of the arrays that belong to the state, all but kept. */
+static size_t size_of_arrays(const struct filter_par *par)
+{
+	size_t n = par->particles, depth = (size_t)par->depth;
+
+	return (depth + 1) * n * sizeof(double) + depth * sizeof(size_t) +
+	       depth * n * sizeof(uint32_t);
+}
 
 struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 {
 	struct filter *f = calloc(1, sizeof *f);
-	size_t n = par->particles, all = (size_t)par->depth * n;
+	size_t n = par->particles, depth = (size_t)par->depth;
 
 	if (!f)
 		return NULL;
 	f->par = *par;
 	f->draw = draw;
-	f->x = calloc(all, sizeof *f->x);
-	f->ancestor = calloc(all, sizeof *f->ancestor);
-	f->count = calloc((size_t)par->depth, sizeof *f->count);
-	f->weight = calloc(n, sizeof *f->weight);
-	f->kept = calloc(n, sizeof *f->kept);
-	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->kept) {
+	f->x = calloc(1, size_of_arrays(par) + n * sizeof *f->kept);
+	if (!f->x) {
 		filter_free(f);
 		return NULL;
 	}
+	f->weight = f->x + depth * n;
+	f->count = (size_t *)(f->weight + n);
+	f->ancestor = (uint32_t *)(f->count + depth);
+	f->kept = f->ancestor + depth * n;
 	return f;
 }
 
 struct filter *filter_copy(const struct filter *f, struct draw *draw)
 {
 	struct filter *copy = filter_new(&f->par, draw);
-	size_t n = f->par.particles, all = (size_t)f->par.depth * n;
 
 	if (!copy)
 		return NULL;
-	memcpy(copy->x, f->x, all * sizeof *f->x);
-	memcpy(copy->ancestor, f->ancestor, all * sizeof *f->ancestor);
-	memcpy(copy->count, f->count, (size_t)f->par.depth * sizeof *f->count);
-	memcpy(copy->weight, f->weight, n * sizeof *f->weight);
-	copy->newest = f->newest;
-	copy->filled = f->filled;
-	copy->sum = f->sum;
+	memcpy(copy->x, f->x, size_of_arrays(&f->par));
+	copy->at = f->at;
 	return copy;
 }
 
 void filter_free(struct filter *f)
 {
-	if (!f)
-		return;
-	free(f->x);
-	free(f->ancestor);
-	free(f->count);
-	free(f->weight);
-	free(f->kept);
+	if (f)
+		free(f->x);
 	free(f);
 }
 
 void filter_pass(struct filter *f, struct state *s)
 {
-	size_t n = f->par.particles, all = (size_t)f->par.depth * n;
-
-	state_move(s, f->x, all * sizeof *f->x);
-	state_move(s, f->ancestor, all * sizeof *f->ancestor);
-	state_move(s, f->count, (size_t)f->par.depth * sizeof *f->count);
-	state_move(s, f->weight, n * sizeof *f->weight);
-	state_move(s, &f->newest, sizeof f->newest);
-	state_move(s, &f->filled, sizeof f->filled);
-	state_move(s, &f->sum, sizeof f->sum);
-	state_move(s, &f->now, sizeof f->now);
+	state_move(s, f->x, size_of_arrays(&f->par));
+	state_move(s, &f->at, sizeof f->at);
 }
 
 int filter_depth(const struct filter *f)
 {
-	return f->filled;
+	return f->at.filled;
 }
 
 static size_t place_of(const struct filter *f, int lag)
 {
-	return (size_t)((f->newest - lag + f->par.depth) % f->par.depth);
+	return (size_t)((f->at.newest - lag + f->par.depth) % f->par.depth);
 }
 
 static double *states_of(const struct filter *f, int lag)
@@ -117,10 +109,10 @@ static double *push_step(struct filter *f)
 {
 	uint32_t *own;
 
-	f->newest = (f->newest + 1) % f->par.depth;
-	if (f->filled < f->par.depth)
-		f->filled++;
-	f->count[f->newest] = f->par.particles;
+	f->at.newest = (f->at.newest + 1) % f->par.depth;
+	if (f->at.filled < f->par.depth)
+		f->at.filled++;
+	f->count[f->at.newest] = f->par.particles;
 	own = ancestors_of(f, 0);
 	for (size_t i = 0; i < f->par.particles; i++)
 		own[i] = (uint32_t)i;
@@ -131,7 +123,7 @@ static void weigh_equally(struct filter *f)
 {
 	for (size_t i = 0; i < f->par.particles; i++)
 		f->weight[i] = 1;
-	f->sum = (double)f->par.particles;
+	f->at.sum = (double)f->par.particles;
 }
 
 /* Mean of the states, about one of them, and the effective sample size. */
@@ -148,13 +140,13 @@ static void find_moments(struct filter *f)
 		lanes_add(&off, w * (lanes_load(x + i, width) - x[0]), width);
 		lanes_add(&squares, w * w, width);
 	}
-	f->now.mean = x[0] + (off[0] + off[1]) / f->sum;
-	f->now.ess = f->sum * f->sum / (squares[0] + squares[1]);
+	f->at.now.mean = x[0] + (off[0] + off[1]) / f->at.sum;
+	f->at.now.ess = f->at.sum * f->at.sum / (squares[0] + squares[1]);
 }
 
 void filter_start(struct filter *f, const double *past, int count, double spread)
 {
-	f->filled = 0;
+	f->at.filled = 0;
 	for (int k = 0; k < count; k++) {
 		double *x = push_step(f);
 
@@ -182,7 +174,7 @@ void filter_predict(struct filter *f, const double *mean, double sigma)
 
 struct filter_now filter_now(const struct filter *f)
 {
-	return f->now;
+	return f->at.now;
 }
 
 /* The least distance of a particle that has a weight from y, in standard deviations. */
@@ -228,8 +220,8 @@ static double weigh(struct filter *f, double y, double noise, double near)
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
 	}
-	f->sum = sums[0][0] + sums[0][1];
-	f->now.mean = (sums[2][0] + sums[2][1]) / f->sum;
+	f->at.sum = sums[0][0] + sums[0][1];
+	f->at.now.mean = (sums[2][0] + sums[2][1]) / f->at.sum;
 	return sums[1][0] + sums[1][1];
 }
 
@@ -276,7 +268,7 @@ static void prune(struct filter *f)
 {
 	size_t n = 0;
 
-	for (int lag = 0; lag < f->filled; lag++) {
+	for (int lag = 0; lag < f->at.filled; lag++) {
 		size_t *count = &f->count[place_of(f, lag)];
 		double *x = states_of(f, lag);
 		uint32_t *ancestor = ancestors_of(f, lag);
@@ -294,16 +286,16 @@ static void prune(struct filter *f)
 
 double filter_update(struct filter *f, double y, double noise)
 {
-	double before = f->sum, near = nearest(f, y, noise),
-	       squares = weigh(f, y, noise, near), sum = f->sum;
+	double before = f->at.sum, near = nearest(f, y, noise),
+	       squares = weigh(f, y, noise, near), sum = f->at.sum;
 	size_t n = f->par.particles;
 
-	f->now.ess = sum * sum / squares;
-	if (f->par.share >= 1 || f->now.ess < f->par.share * (double)n) {
+	f->at.now.ess = sum * sum / squares;
+	if (f->par.share >= 1 || f->at.now.ess < f->par.share * (double)n) {
 		resample(f->draw, f->weight, sum, n, ancestors_of(f, 0));
 		weigh_equally(f);
 		prune(f);
-		f->now.resamplings++;
+		f->at.now.resamplings++;
 	}
 	return log(sum / before) - 0.5 * near * near - log(noise) - 0.5 * log(2 * M_PI);
 }

@@ -21,7 +21,7 @@
 #ifndef LIFE_FILTER_H
 #define LIFE_FILTER_H
 
-#include "life/particle/draw.h"
+#include "num/draw.h"
 #include <stddef.h>
 #include <stdint.h>
 

@@ -18,10 +18,6 @@ struct shed {
 	double count, large;
 };
 
-struct moments {
-	double mean, step_variance, life_variance;
-};
-
 struct class
 {
 	const struct partition *owner;
@@ -31,10 +27,10 @@ struct class
 	struct realisations *reader;
 	long last_realisation, last_step; /* of the row before; -1: none */
 	long lowest, highest;             /* first and last realisation with rows */
-	/* Over realisations: volume, and number of steps that count for the rate. */
-	struct running volume, steps;
-	double product;      /* sum of their products about their means */
-	struct running cell; /* over realisations and steps: volume */
+	/* Over realisations: volume, of the steps that count for the rate. */
+	struct running volume;
+	struct regression steps; /* of the volume on the number of steps */
+	struct running cell;     /* over realisations and steps: volume */
 	long nhistories;
 	struct shed *shed; /* [shed_steps][GROUPS] */
 	long shed_steps;
@@ -42,7 +38,7 @@ struct class
 	double times[GROUPS]; /* how often each was drawn for the present replicate */
 	/* Of a closed class. */
 	double realisations, error, skewness; /* error: relative, of the mean */
-	struct moments all, now;
+	struct partition_wear all, now;
 };
 
 struct partition {
@@ -112,7 +108,7 @@ static enum num_status take_history(
 	void *to, const struct realisation_cell *cell, size_t n)
 {
 	struct class *c = to;
-	double volume = 0, steps = 0, d;
+	double volume = 0, steps = 0;
 
 	for (size_t i = 0, end; i < n; i = end) {
 		double here = 0;
@@ -134,10 +130,8 @@ static enum num_status take_history(
 		c->lowest = cell->realisation;
 	c->lowest = cell->realisation < c->lowest ? cell->realisation : c->lowest;
 	c->highest = cell->realisation > c->highest ? cell->realisation : c->highest;
-	d = steps - c->steps.mean;
-	running_add(&c->steps, steps);
 	running_add(&c->volume, volume);
-	c->product += d * (volume - c->volume.mean);
+	regression_add(&c->steps, steps, volume);
 	if (c->owner->sizes && group_sizes(c, cell, n))
 		return NUM_MEMORY;
 	c->nhistories++;
@@ -216,20 +210,19 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 		empty = (double)c->highest - (double)c->lowest + 1 -
 			(double)c->nhistories;
 		running_repeat(&c->volume, 0, empty);
-		c->steps = (struct running){ .n = c->volume.n, .mean = steps };
-		c->product = 0;
+		c->steps = (struct regression){ .mean_x = steps };
 		running_repeat(&c->cell, 0, c->volume.n * steps - c->cell.n);
 	}
-	if (!(c->steps.mean > 0))
+	if (!(c->steps.mean_x > 0))
 		return PARTITION_EMPTY;
 	c->realisations = c->volume.n;
-	c->all.mean = c->volume.mean / c->steps.mean;
+	c->all.mean = c->volume.mean / c->steps.mean_x;
 	/* Of volume - mean * steps over the realisations, whose mean is 0. */
-	scatter = c->volume.square - 2 * c->all.mean * c->product +
-		  c->all.mean * c->all.mean * c->steps.square;
+	scatter = c->volume.square - 2 * c->all.mean * c->steps.xy +
+		  c->all.mean * c->all.mean * c->steps.xx;
 	if (c->realisations > 1)
 		c->all.life_variance = fmax(scatter, 0) / (c->realisations - 1) /
-				       (c->steps.mean * c->steps.mean);
+				       (c->steps.mean_x * c->steps.mean_x);
 	c->all.step_variance = c->cell.n > 1 ? running_variance(&c->cell) : 0;
 	if (c->all.mean > 0)
 		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
@@ -344,8 +337,8 @@ double partition_power_mean(double p0, double y0, double p1, double y1)
 }
 
 /* Adds the moments of an area that wears as so many independent parts. */
-static void add_area(struct partition_wear *wear, const struct moments *m, double area,
-	double fragment, double parts)
+static void add_area(struct partition_wear *wear, const struct partition_wear *m,
+	double area, double fragment, double parts)
 {
 	double fragments = area / fragment;
 	double n = parts > 0 ? parts : fmax(fragments, 1);
@@ -378,7 +371,7 @@ static void integrate(
 {
 	double mean[PARTITION_CLASSES_MAX], step[PARTITION_CLASSES_MAX];
 	double life[PARTITION_CLASSES_MAX];
-	struct moments zone;
+	struct partition_wear zone;
 
 	*wear = (struct partition_wear){ 0 };
 	for (int c = 0; c < p->nclasses; c++) {
@@ -391,7 +384,7 @@ static void integrate(
 	}
 	if (!(p->zone > 0))
 		return;
-	zone = (struct moments){ zone_mean(p, mean), zone_mean(p, step),
+	zone = (struct partition_wear){ zone_mean(p, mean), zone_mean(p, step),
 		zone_mean(p, life) };
 	add_area(wear, &zone, p->zone, p->fragment_area, parts);
 }

@@ -3,19 +3,6 @@
 #include "num/select.h"
 #include <math.h>
 
-double metric_quantile(const double *sorted, size_t n, double level)
-{
-	double place = level * (double)(n - 1);
-	size_t i = (size_t)place;
-	double part = place - (double)i;
-
-	if (i + 1 >= n || part == 0)
-		return sorted[i < n ? i : n - 1];
-	if (isinf(sorted[i + 1]))
-		return sorted[i + 1];
-	return sorted[i] + part * (sorted[i + 1] - sorted[i]);
-}
-
 void metric_cut(double *sample, size_t n, double horizon)
 {
 	for (size_t i = 0; i < n; i++)
@@ -81,11 +68,11 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 	r.accuracy = 1 - fabs(r.error) / truth;
 	r.mass = share_within(
 		sample, n, truth * (1 - m->par.alpha), truth * (1 + m->par.alpha));
-	r.inside = r.mass >= m->par.beta;
+	r.inside = r.mass >= 0.5;
 	r.covered = lower <= truth && truth <= upper;
 	r.crps =
 		metric_crps(sample, n, truth, m->par.limit > 0 ? m->par.limit : INFINITY);
-	if (share_within(sample, n, truth - wide, truth + wide) < m->par.beta)
+	if (share_within(sample, n, truth - wide, truth + wide) < 0.5)
 		m->horizon = 0;
 	else if (m->horizon == 0)
 		m->horizon = truth;

@@ -4,7 +4,7 @@
  * interval.  With the true end of life T the truth is r = T - t.  Any unit of time, the
  * same one throughout.
  *
- *	struct metrics m = { .par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 } };
+ *	struct metrics m = { .par = { .eol = 1186, .alpha = 0.2 } };
  *	metrics_add(&m, t, mean, q05, q95, sample, n, NULL);
  *	struct metrics_sum sum = metrics_get(&m);
  *
@@ -18,10 +18,6 @@
 
 #include "num/status.h"
 #include <stddef.h>
-
-/* Quantile of n >= 1 ascending samples, linear between order statistics at
- * (n - 1) level; the last ones may be INFINITY ("never"). */
-double metric_quantile(const double *sorted, size_t n, double level);
 
 /* Sets the samples beyond the horizon to INFINITY, and sorts. */
 void metric_cut(double *sample, size_t n, double horizon);
@@ -37,7 +33,6 @@ double metric_crps(const double *sorted, size_t n, double truth, double limit);
 struct metrics_par {
 	double eol;   /* true end of life, on the axis of t */
 	double alpha; /* half-width of the accuracy cone, share > 0: 0.2 */
-	double beta;  /* least probability inside the cone: 0.5 */
 	double limit; /* upper end of the CRPS integral; 0: none */
 };
 
@@ -47,7 +42,7 @@ struct metrics_row {
 	double error;    /* point - truth; > 0 is late */
 	double accuracy; /* relative accuracy 1 - |error| / truth, at most 1 */
 	double mass;     /* probability within (1 +- alpha) truth */
-	int inside;      /* alpha-lambda test: mass >= beta */
+	int inside;      /* alpha-lambda test: mass >= 1/2 */
 	int covered;     /* lower <= truth <= upper */
 	double crps;
 };
@@ -60,7 +55,7 @@ struct metrics_sum {
 	double accuracy;        /* cumulative relative accuracy: mean of accuracy */
 	double alpha_lambda;    /* share of predictions inside the cone */
 	double horizon;         /* prognostic horizon: eol - t of the first prediction
-				 * from which on all have probability >= beta within
+				 * from which on all have probability >= 1/2 within
 				 * truth +- alpha eol; 0 if the last one does not */
 	double coverage;        /* share of intervals that contain the truth */
 	double crps;

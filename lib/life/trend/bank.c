@@ -21,7 +21,7 @@ enum {
 };
 
 static const double SCORED = 18; /* rows that count in full, see weigh() */
-static const double CUT = 3;     /* of an innovation, see square_at() */
+static const double CUT = 3;     /* of an innovation, see student_square() */
 /* The same limit for a row that is held back.  With 3 % of outliers and a burst of four,
  * limits of 3.5, 4, 6 and 8 give a CRPS of 24.1, 24.5, 24.6 and 24.2 % of life; 5 gives
  * 24.6 (700 paths of seven kinds of tests/long/lives.c with other seeds, as for HALT). */
@@ -135,16 +135,6 @@ static double log_density(const struct bank *b, const struct trend *tr,
 
 	return b->log_constant[tr->kind] + p->log_slope - 0.5 * log(variance * f) -
 	       0.5 * (freedom + 1) * log1p(z * z / (freedom * variance));
-}
-
-/* The square of Student's t, in units of the noise variance, that is as rare as a normal
- * deviate of this size (Wallace, Ann. Math. Stat. 30 (1959) 1124).  It is larger where
- * few rows have determined the noise. */
-static double square_at(double deviate, double freedom)
-{
-	double wide = (8 * freedom + 3) / (8 * freedom + 1) * deviate;
-
-	return freedom * expm1(fmin(600, wide * wide / freedom));
 }
 
 /* Scores a reading that is equal to one before, rounded from anywhere in a cell with
@@ -360,7 +350,7 @@ static void take(struct bank *b, const struct row *r)
 	int shape = -1;
 
 	face_loads(b, r);
-	b->cut = square_at(CUT, b->freedom[0]);
+	b->cut = student_square(CUT, b->freedom[0]);
 	for (int j = 0; j < KINDS; j++) {
 		b->keep[j] = b->rows >= BANK_START - 1 ? k / (k + kinds[j].memory) : 1;
 		b->log_constant[j] = student_log_constant(b->freedom[j]);
@@ -509,7 +499,8 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 {
 	(void)p;
 	(void)f;
-	return z * z > square_at(SURPRISE, b->freedom[0]) * tr->sum / freedom_of(b, tr);
+	return z * z >
+	       student_square(SURPRISE, b->freedom[0]) * tr->sum / freedom_of(b, tr);
 }
 
 /* Widens the variance of the level by a jump of the damage to this value. */

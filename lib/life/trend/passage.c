@@ -103,11 +103,6 @@ void bank_chances_free(struct bank_chances *c)
 	free(c);
 }
 
-int bank_chances_count(const struct bank_chances *c)
-{
-	return c->n;
-}
-
 double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 {
 	return c->draw[draw].z[k];

@@ -38,11 +38,10 @@ struct bank_chances; /* random numbers, shared by all units of a run */
 
 struct bank_chances *bank_chances_new(int draws, uint64_t seed); /* NULL: no memory */
 void bank_chances_free(struct bank_chances *chances);
-int bank_chances_count(const struct bank_chances *chances);
 /* Normal deviate k < 8 of a draw. */
 double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
 
-/* Draws bank_chances_count() times from now (>= the last t) to the first passage of the
+/* Makes all draws of the time from now (>= the last t) to the first passage of the
  * level, unsorted; INFINITY: never.  With the same chances at every row the results
  * change smoothly from row to row. */
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *chances,

@@ -1,5 +1,5 @@
 /* draw.c - see draw.h */
-#include "life/particle/draw.h"
+#include "num/draw.h"
 #include "num/ziggurat.h"
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
  * Each deviate uses one 32-bit word: seven bits for the layer, the others for the
  * position in it.  Numbers are drawn in sequence; num/normals.h draws them by address.
  */
-#ifndef LIFE_DRAW_H
-#define LIFE_DRAW_H
+#ifndef NUM_DRAW_H
+#define NUM_DRAW_H
 
 #include "num/philox.h"
 #include "num/state.h"
