@@ -57,19 +57,19 @@ void match_begin(struct match *m, const struct layout_par *par, int coils)
 }
 
 /* Where the pulse is searched at a coil, from what the coils before it have measured:
- * from the last of them, or around the line through them all. */
+ * in the range of the traffic from the last of them, and around the line through them
+ * all. */
 struct window {
-	int coil, predicted;
-	double low;       /* from the arrival at the coil before, if not predicted */
-	double mean;      /* position of the coils before */
-	double precision; /* of the slowness by them, one over its variance */
-	double width;
+	int coil;
+	double low, width; /* the range: from the arrival at the coil before */
+	double mean;       /* position of the coils before */
+	double precision;  /* of the slowness by them, one over its variance */
+	double narrow;     /* width around the line; INFINITY: it is not used */
 };
 
 struct windows {
 	int count;
 	struct window window[LAYOUT_COILS];
-	double sum, widest;
 };
 
 /* By arrivals and widths at the coils before, whose mean has independent errors. */
@@ -97,49 +97,51 @@ static void find_windows(
 	*all = (struct windows){ .count = 0 };
 	for (int k = 1; k < m->coils; k++) {
 		struct window *w = &all->window[all->count];
-		double way = coil[k] - coil[k - 1], narrow;
+		double way = coil[k] - coil[k - 1];
 
 		if (!(way > 0))
 			continue;
 		*w = (struct window){ .coil = k,
 			.low = way * m->fastest - error,
-			.width = way * (m->slowest - m->fastest) + 2 * error };
-		narrow = 2 * deviations * prediction_error(m, coil, w);
-		w->predicted = (by_width || all->count > 0) && narrow < w->width;
-		w->width = w->predicted ? narrow : w->width;
+			.width = way * (m->slowest - m->fastest) + 2 * error,
+			.narrow = INFINITY };
+		if (by_width || all->count > 0)
+			w->narrow = 2 * deviations * prediction_error(m, coil, w);
 		all->count++;
-		all->sum += w->width;
-		all->widest = fmax(all->widest, w->width);
 	}
 }
 
-/* Where the windows of own particle i begin, after it has passed the first coil. */
+/* Where the windows of own particle i begin, after it has passed the first coil, and how
+ * wide they are. */
 static void place_windows(const struct match *m, const double *coil,
-	const struct windows *all, int i, double *begin)
+	const struct windows *all, int i, double *begin, double *width)
 {
 	double precision = 1 / (m->width_error * m->width_error),
 	       s2 = m->time_error * m->time_error;
-	double arrival[LAYOUT_COILS] = { 0 }, width[LAYOUT_COILS] = { 0 };
+	double arrival[LAYOUT_COILS] = { 0 }, slow[LAYOUT_COILS] = { 0 };
 
 	for (int k = 0; k < m->coils; k++) {
 		arrival[k] = m->own[i] * (coil[k] - coil[0]) +
 			     m->time_error * m->own_time[i][k];
-		width[k] = m->own[i] + m->width_error * m->own_width[i][k];
+		slow[k] = m->own[i] + m->width_error * m->own_width[i][k];
 	}
 	for (int j = 0; j < all->count; j++) {
 		const struct window *w = &all->window[j];
-		double time = 0, sum = 0;
+		double time = 0, sum = 0, end;
 
 		begin[j] = arrival[w->coil - 1] + w->low;
-		if (!w->predicted)
+		width[j] = w->width;
+		if (isinf(w->narrow))
 			continue;
 		for (int k = 0; k < w->coil; k++) {
 			time += arrival[k] / w->coil;
-			sum += precision * width[k] +
+			sum += precision * slow[k] +
 			       (coil[k] - w->mean) * arrival[k] / s2;
 		}
-		begin[j] = time + (coil[w->coil] - w->mean) * sum / w->precision -
-			   w->width / 2;
+		time += (coil[w->coil] - w->mean) * sum / w->precision;
+		end = fmin(begin[j] + w->width, time + w->narrow / 2);
+		begin[j] = fmax(begin[j], time - w->narrow / 2);
+		width[j] = fmax(end - begin[j], 0);
 	}
 }
 
@@ -167,57 +169,64 @@ static double union_of(double *begin, double *width, int n)
 }
 
 /* The mean over the others of the time during which they would be in one of the windows
- * that begin here. */
+ * that begin here and are so wide. */
 static double exposed(const struct match *m, const double *coil,
-	const struct windows *all, const double *begin)
+	const struct windows *all, const double *begin, const double *width)
 {
 	double sum = 0;
 
+	if (all->count == 1)
+		return width[0];
+
 	for (int i = 0; i < MATCH_OTHERS; i++) {
-		double from[LAYOUT_COILS], width[LAYOUT_COILS];
+		double from[LAYOUT_COILS], wide[LAYOUT_COILS];
 
 		for (int j = 0; j < all->count; j++) {
 			const struct window *w = &all->window[j];
 
 			from[j] = begin[j] - m->other[i] * (coil[w->coil] - coil[0]) -
 				  m->time_error * m->other_time[i][w->coil];
-			width[j] = w->width;
+			wide[j] = width[j];
 		}
-		sum += union_of(from, width, all->count);
+		sum += union_of(from, wide, all->count);
 	}
 	return sum / MATCH_OTHERS;
 }
 
-static double unique(const struct match *m, const double *coil, const struct windows *all)
+/* The probability; 0 as soon as it is known to be below least: a particle is in a window
+ * during no less than the widest. */
+static double unique(
+	const struct match *m, const double *coil, int by_width, double least)
 {
 	const struct traffic *t = &m->par->traffic;
-	double begin[LAYOUT_COILS], sum = 0;
+	double begin[MATCH_OWN][LAYOUT_COILS], width[MATCH_OWN][LAYOUT_COILS];
+	double sum = 0, most = 0;
+	struct windows all;
 
-	if (all->count < 2)
-		return traffic_unique(t, all->sum);
+	find_windows(m, coil, by_width, &all);
+	if (all.count == 0)
+		return 1;
 	for (int i = 0; i < MATCH_OWN; i++) {
-		place_windows(m, coil, all, i, begin);
-		sum += traffic_unique(t, exposed(m, coil, all, begin));
+		double widest = 0;
+
+		place_windows(m, coil, &all, i, begin[i], width[i]);
+		for (int j = 0; j < all.count; j++)
+			widest = fmax(widest, width[i][j]);
+		most += traffic_unique(t, widest) / MATCH_OWN;
 	}
+	if (most < least)
+		return 0;
+	for (int i = 0; i < MATCH_OWN; i++)
+		sum += traffic_unique(t, exposed(m, coil, &all, begin[i], width[i]));
 	return sum / MATCH_OWN;
 }
 
 double match_unique(const struct match *m, const double *coil, int by_width)
 {
-	struct windows all;
-
-	find_windows(m, coil, by_width, &all);
-	return unique(m, coil, &all);
+	return unique(m, coil, by_width, 0);
 }
 
-/* A particle is in at least one window during no less than the widest and no more than
- * their sum. */
 int match_reaches(const struct match *m, const double *coil, double least)
 {
-	const struct traffic *t = &m->par->traffic;
-	struct windows all;
-
-	find_windows(m, coil, 1, &all);
-	return traffic_unique(t, all.widest) >= least &&
-	       (traffic_unique(t, all.sum) >= least || unique(m, coil, &all) >= least);
+	return unique(m, coil, 1, least) >= least;
 }

@@ -1,10 +1,10 @@
 /* match.h - probability that the pulses of a particle at successive coils are matched
  *
- * A pulse is matched from each position to the next: at the second coil within the window
- * of the traffic, which may be narrowed by the duration of the first pulse; at later
- * coils within the prediction of the coils so far.  A window extends three standard
- * errors to either side: two particles of equal velocity whose arrivals differ by less
- * cannot be told apart.
+ * A pulse is matched from each position to the next, within the range of the traffic: at
+ * the second coil also within the prediction by the duration of the first pulse if that
+ * is used, and at later coils within that by the coils so far.  Range and prediction
+ * extend three standard errors to either side: two particles of equal velocity whose
+ * arrivals differ by less cannot be told apart.
  *
  * The match is unambiguous if no other particle is in any window.  With arrivals as a
  * Poisson process, and A the time at the first coil during which another particle would
@@ -13,7 +13,7 @@
  *	p = E exp(-arrivals A),
  *
  * the mean over the particle's own velocity and errors.  A is the width of the window
- * where there is one.  The windows of others move against each other with the velocity
+ * where there is one.  Several windows move against each other with the velocity
  * and the errors of the other particle; both means are then taken over points that fill
  * the unit cube evenly.
  */
@@ -28,10 +28,10 @@ struct layout_par {
 	struct traffic traffic;
 };
 
-/* Particles: for 100 random layouts of 3 to 6 coils (1 to 1000 particles per second, 0 to
- * 40 dB, all profiles) the probabilities with 64 and 128, 128 and 256, 256 and 512, 512
- * and 1024 differ by .0006, .0003, .0002 and .0001 rms, .005, .003, .002 and .001 at
- * most from those with 2048 and 8192. */
+/* Particles: for 100 random layouts of 2 to 6 coils (1 to 1000 particles per second, 0 to
+ * 40 dB, all profiles) the probabilities by widths with 256 and 512, and with 512 and
+ * 1024, differ by .0005 and .0002 rms, .003 and .001 at most from those with 2048 and
+ * 8192. */
 enum { LAYOUT_COILS = 16, MATCH_OWN = 256, MATCH_OTHERS = 512 };
 
 struct match {
