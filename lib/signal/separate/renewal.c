@@ -21,13 +21,6 @@ enum { LEAST_PART = 8 };
  * at most 1.1 of its bound (tests/long/duet.t). */
 static const double OFTEN = 0.1, HALF = 0.5, CERTAIN = 100;
 
-/* Share of the work allowed in a record that other stretches may take which then do not
- * fit.  Of 72 records of random instruments (alone, in groups, behind a high-pass) a
- * sixteenth refuses one that renews its instrument, with 37 of its 56 particles; an
- * eighth, a quarter and a half give its rows, and those of the only other one whose rows
- * a sixteenth changes. */
-static const double OTHERS = 0.125;
-
 struct stretch {
 	struct separate *s; /* NULL: none */
 	long long origin;   /* frame of the record */
@@ -64,10 +57,11 @@ struct renewal {
 	size_t changes, change_room;
 };
 
-/* Work that other stretches than the present one may still take. */
+/* Work that other stretches than the present one may still take: together as much as is
+ * allowed in the record. */
 static double work_left(const struct renewal *r)
 {
-	return OTHERS * separate_allowed(r->now.s) - r->spent;
+	return separate_allowed(r->now.s) - r->spent;
 }
 
 static struct separate *begin(
