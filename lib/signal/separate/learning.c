@@ -13,24 +13,20 @@
  * standard deviations: 300 (2 pi / 20)^4 = 3, that of noise is 8. */
 static const double FOLLOWED = 20;
 
-/* Samples of pulses that may be computed to learn from the first samples of a record,
- * and a part of it from fewer than half of SEPARATE_LEARN: groups of six Lorentz pulses
- * at 30 dB take 7.4e8, of three pulses behind an estimated low-pass 7.7e8, and known
- * shapes, which have half of it, 4.6e8 of pulses behind a slow low-pass of one pole; a
- * record that pulses do not describe would take more.  A part for all of SEPARATE_LEARN
- * refuses one record of 2.3 s at 10 kHz with clipped pulses, in which known shapes take
- * 2.15e8.  And per second of a long record, some second of processor time, for what is
- * tried later.  Separating takes as much at most: of the scenes of
- * tests/matrix/scenes.tsv at 10 kHz none that pulses describe takes more than 4.8e7 per
- * second (dense-350-gauss), bubbles alone take 1.7e8, with many particles among them
- * 5.9e8. */
+/* Samples of pulses that may be computed to learn from the beginning of a record: groups
+ * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind an estimated low-pass
+ * 7.7e8, and known shapes, which have half of it, 4.6e8 of pulses behind a slow low-pass
+ * of one pole; a record that pulses do not describe would take more.  And per second of a
+ * long record, some second of processor time, for what is tried later.  Separating takes
+ * as much at most: of the scenes of tests/matrix/scenes.tsv at 10 kHz none that pulses
+ * describe takes more than 4.8e7 per second (dense-350-gauss), bubbles alone take 1.7e8,
+ * with many particles among them 5.9e8. */
 static const double EFFORT = 1e9, EFFORT_PER_SECOND = 9e7;
 
 double separate_effort(const struct separate *s, double samples)
 {
-	double rate = s->par.rate > 0 ? s->par.rate : 1e4, all = samples * s->ratio;
-	double most = fmax(EFFORT * fmin(2 * all / SEPARATE_LEARN, 1),
-		EFFORT_PER_SECOND * all / rate);
+	double rate = s->par.rate > 0 ? s->par.rate : 1e4;
+	double most = fmax(EFFORT, EFFORT_PER_SECOND * samples * s->ratio / rate);
 
 	return s->par.effort > 0 ? fmin(s->par.effort, most) : most;
 }
