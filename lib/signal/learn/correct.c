@@ -76,8 +76,9 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
  * measure.c half of it gives one more wrong row, twice of it the same rows. */
 static const double CORRECTION = 80;
 
-/* Excess chi-square of the examples that count, plus half the threshold for each pulse: a
- * shape with which one pulse replaces two is not better for that. */
+/* Excess chi-square of the examples that count, plus the threshold for each pulse.  With
+ * half of it an echo, an eighth as high as its pulse, is taken for particles in two of 48
+ * records of groups: of one 7 of 23 rows are wrong, of the other all are doubted. */
 static double cost(const struct examples *ex, const unsigned char *counts)
 {
 	double sum = 0;
@@ -85,7 +86,7 @@ static double cost(const struct examples *ex, const unsigned char *counts)
 	for (int i = 0; i < ex->count; i++)
 		if (counts[i])
 			sum += ex->example[i].excess +
-			       0.5 * ex->scene.threshold_near * ex->example[i].m;
+			       ex->scene.threshold_near * ex->example[i].m;
 	return sum;
 }
 
