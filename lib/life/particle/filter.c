@@ -37,6 +37,7 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 {
 	struct filter *f = calloc(1, sizeof *f);
 	size_t n = par->particles, depth = (size_t)par->depth;
+	void *rest;
 
 	if (!f)
 		return NULL;
@@ -48,8 +49,10 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 		return NULL;
 	}
 	f->weight = f->x + depth * n;
-	f->count = (size_t *)(f->weight + n);
-	f->ancestor = (uint32_t *)(f->count + depth);
+	rest = f->weight + n; /* of falling alignment */
+	f->count = rest;
+	rest = f->count + depth;
+	f->ancestor = rest;
 	f->kept = f->ancestor + depth * n;
 	return f;
 }
