@@ -214,8 +214,7 @@ static enum separate_status take_window(
 	separate_set_gain(s, from);
 	if (s->par.method == SEPARATE_FIT && !s->par.sources &&
 		((cut && s->crowded) ||
-			joint_work(s->joint) >
-				separate_effort(s, fmax((double)from, SEPARATE_LEARN)))) {
+			joint_work(s->joint) > separate_effort(s, (double)from))) {
 		s->window = DENSE;
 		s->carried = 0;
 	}
