@@ -386,6 +386,25 @@ static enum separate_status without_crosstalk(struct look *look, struct calibrat
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
+/* The range of velocities, from the channels without their lines, which look like pulses.
+ */
+static enum separate_status find_velocities(const struct look *look, struct velocities *v)
+{
+	const size_t n = look->n;
+	double *y = malloc((3 * n + 1) * sizeof *y);
+	enum separate_status status = SEPARATE_MEMORY;
+
+	if (y) {
+		memcpy(y, look->x[0], n * sizeof *y);
+		memcpy(y + n, look->x[1], n * sizeof *y);
+		status = measure_lines(look->par, y, y + n, n, y + 2 * n);
+	}
+	if (status == SEPARATE_OK && velocities_find(y, y + n, n, v) != NUM_OK)
+		status = SEPARATE_MEMORY;
+	free(y);
+	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
+}
+
 /* Learns from channels of equal polarity; OPPOSITE if they seem to differ. */
 static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
@@ -398,12 +417,14 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	/* A filter that is to be undone has given the pulses lobes, which look like
 	 * slower pulses. */
 	if (!par->filter && isnan(par->lag) && isnan(par->spread) &&
-		isnan(par->duration) && velocities_find(x1, x2, n, &v) != NUM_OK)
+		isnan(par->duration) && find_velocities(&look, &v) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	if (v.slow * (1 - CALIBRATE_WIDE) > v.fast * (1 + CALIBRATE_WIDE))
 		status = try_velocities(&look, &v, c);
 	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
 		status = find(&look, c);
+	if (status == SEPARATE_NO_LAG && v.ratio > 0)
+		status = try_velocities(&look, &v, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
 		status = try_wide(&look, c);

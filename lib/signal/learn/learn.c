@@ -592,6 +592,16 @@ static int are_halves(const struct examples *ex)
 	return ex->corrected && 2 * most > ex->count;
 }
 
+/* 1 if the pulses stand out at the sensor that shows them less, on average as much as a
+ * pulse has to: what one sensor alone shows has no transit time. */
+static int shows_at_both(const struct examples *ex)
+{
+	const double square = ex->scene.gain * ex->scene.gain;
+	const double share = fmin(square, 1) / (1 + square);
+
+	return share * ex->energy >= ex->scene.threshold_near * examples_pulses(ex);
+}
+
 /* Learns by pulses of one source. */
 static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found, int source,
@@ -630,7 +640,8 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		c->crosstalk[1] *= c->noise[1] / c->noise[0];
 	}
 	if (status == SEPARATE_OK)
-		status = are_halves(&ex) ? SEPARATE_HARD : ex.status;
+		status = are_halves(&ex) || !shows_at_both(&ex) ? SEPARATE_HARD
+								: ex.status;
 	if (ex.joint)
 		c->work += joint_work(ex.joint);
 	c->events = examples_pulses(&ex);

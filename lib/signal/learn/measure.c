@@ -846,3 +846,12 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	template_clear(&look->found);
 	return status == SEPARATE_OK ? conclude(par, &rec, c) : status;
 }
+
+enum separate_status measure_lines(
+	const struct calibrate_par *par, double *y1, double *y2, size_t n, double *work)
+{
+	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
+	struct calibration c = { .tones = 0 };
+
+	return find_tones(par, &rec, &c);
+}

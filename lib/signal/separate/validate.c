@@ -15,6 +15,7 @@ struct delay {
 struct validation {
 	struct delay delay[EVIDENCE_KEPT];
 	unsigned char doubted[EVIDENCE_KEPT], at_edge[EVIDENCE_KEPT];
+	double weaker[EVIDENCE_KEPT];
 	size_t delays, rows; /* taken in so far */
 	/* Range of delays; transit 0: not known. */
 	double transit, least, most;
@@ -244,14 +245,20 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
 			e[k / m].doubted = e[k % m].doubted = 1;
 }
 
+/* What a pulse has to explain, on average, at the sensor that shows it less: there the
+ * fit finds 2 in noise, at the best of the delays of a range shorter than a pulse. */
+static const double WEAKEST = SIGMAS_SELDOM * SIGMAS_SELDOM;
+
 /* 1 if more than half of the latest rows are doubted, or more than a tenth lie at the
- * edge. */
+ * edge, or what they show at one sensor is noise. */
 static int fails(struct validation *v, const struct evidence *e, size_t n)
 {
-	size_t sum = 0, edge = 0, rows;
+	size_t sum = 0, edge = 0, known = 0, rows;
+	double weaker = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		v->doubted[v->rows % EVIDENCE_KEPT] = (unsigned char)e[i].doubted;
+		v->weaker[v->rows % EVIDENCE_KEPT] = e[i].weaker;
 		v->at_edge[v->rows++ % EVIDENCE_KEPT] =
 			(unsigned char)is_at_edge(v, &e[i]);
 	}
@@ -259,8 +266,11 @@ static int fails(struct validation *v, const struct evidence *e, size_t n)
 	for (size_t i = 0; i < rows; i++) {
 		sum += v->doubted[i];
 		edge += v->at_edge[i];
+		known += v->weaker[i] > 0;
+		weaker += v->weaker[i];
 	}
-	return rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows));
+	return (rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows))) ||
+	       (known >= FEW && weaker < WEAKEST * (double)known);
 }
 
 void validation_test(struct validation *v, struct evidence *e, size_t n)

@@ -12,7 +12,8 @@
  * error of the shape of the strong one.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
- * edge of the range, the record is not like the learned one, and no row is believed.
+ * edge of the range, or pulses do not stand out at both sensors, the record is not like
+ * the learned one, and no row is believed.
  *
  * Rows that are tested together, such as those of the stretch used for calibration, are
  * all stored first; later rows are tested with the last ones before them.
@@ -29,6 +30,8 @@ struct evidence {
 	int fits;          /* 0: doubted already by chi-square */
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
+	double weaker;     /* chi-square that it explains at the sensor that shows it less;
+			      0: unknown */
 	double time;       /* of arrival, durations; ascending within a group */
 	int doubted;       /* set by validation_test() */
 	/* For together.h, of fitted pulses: */
