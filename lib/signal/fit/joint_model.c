@@ -244,13 +244,39 @@ static enum joint_status make_basis(struct joint *j)
 	return JOINT_OK;
 }
 
+/* Vectors that are not 0 in the same samples, as those of waves over the whole record and
+ * of one knot, are taken three at a time. */
+void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
+	double *along)
+{
+	const size_t *from = j->from[c], *to = j->to[c];
+	int b = 0;
+
+	while (b < j->basis) {
+		const double *q = j->q[c] + (size_t)b * j->n;
+		long begin = first > (long)from[b] ? first : (long)from[b];
+		long end = first + (long)n < (long)to[b] ? first + (long)n : (long)to[b];
+
+		if (b + 3 > j->basis || from[b] != from[b + 1] || from[b] != from[b + 2] ||
+			to[b] != to[b + 1] || to[b] != to[b + 2] || end <= begin) {
+			along[b] = joint_along_basis(j, c, b, first, x, n);
+			b++;
+			continue;
+		}
+		q += begin;
+		dot3(x + (begin - first),
+			(const double *[]){ q, q + j->n, q + 2 * j->n },
+			(size_t)(end - begin), along + b);
+		b += 3;
+	}
+}
+
 void joint_measure(struct joint *j)
 {
 	j->energy = 0;
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
-		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] = joint_along_basis(j, c, b, 0, j->e[c], j->n);
+		joint_along_all(j, c, 0, j->e[c], j->n, j->qe[c]);
 	}
 }
 

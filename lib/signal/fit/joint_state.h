@@ -110,6 +110,10 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	int m);
 /* Room for columns of pulses in the range of delays of this scene. */
 enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s);
+/* The inner products of all vectors of a channel's basis with x[0 .. n), whose first
+ * sample is sample first, as joint_along_basis() has them. */
+void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
+	double *along);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);
