@@ -257,15 +257,15 @@ void joint_along_all(const struct joint *j, int c, long first, const double *x, 
 		long begin = first > (long)from[b] ? first : (long)from[b];
 		long end = first + (long)n < (long)to[b] ? first + (long)n : (long)to[b];
 
-		if (b + 3 > j->basis || from[b] != from[b + 1] || from[b] != from[b + 2] ||
-			to[b] != to[b + 1] || to[b] != to[b + 2] || end <= begin) {
+		if (b + 3 > j->basis || from[b] != from[b + 1] ||
+			from[b] != from[b + 2] || to[b] != to[b + 1] ||
+			to[b] != to[b + 2] || end <= begin) {
 			along[b] = joint_along_basis(j, c, b, first, x, n);
 			b++;
 			continue;
 		}
 		q += begin;
-		dot3(x + (begin - first),
-			(const double *[]){ q, q + j->n, q + 2 * j->n },
+		dot3(x + (begin - first), (const double *[]){ q, q + j->n, q + 2 * j->n },
 			(size_t)(end - begin), along + b);
 		b += 3;
 	}
