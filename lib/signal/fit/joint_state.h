@@ -14,6 +14,7 @@ enum {
 	NPAR = PAR * JOINT_PULSES_MAX,
 	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1,
 	PAIR_GAPS = 12,
+	BASIS_ROOM = 4 * BASIS_MAX,
 	PAIR_KNOTS = 2 * PAIR_GAPS /* of either channel */
 };
 
@@ -28,6 +29,16 @@ struct column {
  * and inner products less what the fitted pulses take of them. */
 struct pair_table {
 	double along[PAIR_KNOTS], gram[PAIR_KNOTS][PAIR_KNOTS];
+};
+
+/* Bases of the last fits, which are made again for the next fit to the same samples. */
+enum { BASES = 32 };
+struct basis {
+	size_t n;
+	int tones, vectors, differ;
+	double omega[JOINT_TONES_MAX], variance, hop, knot[2], low, taken;
+	size_t from[2][BASIS_MAX], to[2][BASIS_MAX];
+	double *q[2];
 };
 
 struct joint {
@@ -48,7 +59,10 @@ struct joint {
 	double taken; /* degrees of freedom that they take, without the baseline's */
 	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
 	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
-	double *basis_memory[2];
+	double *basis_memory;                        /* BASIS_ROOM of capacity */
+	size_t basis_used;                           /* of it, by bases[0 .. nbases) */
+	struct basis bases[BASES];
+	int nbases;
 	double *memory;  /* columns of all pulses */
 	double *scratch; /* three of support */
 	double *excess;  /* PAIR_KNOTS of support */
