@@ -267,34 +267,6 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 		"a scene of zeros contains no pulses");
 }
 
-/* A fit with less work than it takes ends without a result; a refinement has no limit. */
-static void test_spent(struct joint *j, const struct joint_scene *plain)
-{
-	static double y[2][N];
-	const struct joint_pulse truth = { .t = 300, .delta = 3, .a = 20 };
-	struct joint_scene s = *plain;
-	struct joint_pulse p[20] = { { .t = 301, .delta = 3, .a = 19 } };
-	struct joint_result r;
-	double chi2;
-	int m = 1;
-
-	memset(y, 0, sizeof y);
-	joint_add(&s, &truth, 1, y[0], y[1], N);
-	s.most = joint_work(j) + 1;
-	ok(joint_fit(j, &s, y[0], y[1], N, p, &m, &r) == JOINT_SPENT && m == 1 &&
-			p[0].t == 301,
-		"a fit that takes too much work leaves the pulses as they were");
-	ok(joint_adjust(j, &s, y[0], y[1], N, p, m, &chi2) == JOINT_SPENT &&
-			p[0].t == 301,
-		"so does an adjustment");
-	ok(joint_refine(j, &s, y[0], y[1], N, p, m, &r) == JOINT_OK &&
-			fabs(p[0].t - truth.t) < 1e-3,
-		"a refinement is not limited");
-	s.most = joint_work(j) + 1e9;
-	ok(joint_fit(j, &s, y[0], y[1], N, p, &m, &r) == JOINT_OK && m == 1,
-		"a fit with enough work is as without a limit");
-}
-
 enum { VARIANTS = 10 };
 
 /* Scene number i of those whose tones and baselines differ in one respect each. */
@@ -534,7 +506,6 @@ int main(void)
 	struct joint *j = joint_new();
 
 	test_clean(j, &s);
-	test_spent(j, &s);
 	test_bases(j, &s);
 	test_wide(j, &s);
 	test_bound(j, &s);

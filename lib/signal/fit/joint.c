@@ -136,7 +136,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		return status;
 	joint_fit_all(j);
 	do {
-		while (failed < 3 + j->m / 8 && j->m < s->max_pulses && !joint_spent(j)) {
+		while (failed < 3 + j->m / 8 && j->m < s->max_pulses) {
 			struct candidate c = search(j, tried, failed);
 
 			if (c.z2 < 0.3 * s->threshold_near)
@@ -147,17 +147,15 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 				tried[failed++] = c;
 		}
 		joint_fit_all(j);
-	} while (!joint_spent(j) && joint_split_pulses(j));
+	} while (joint_split_pulses(j));
 	full = s->give_up && are_more(j);
-	if (!full && !joint_spent(j)) {
+	if (!full) {
 		joint_swap_pulses(j);
 		joint_merge_pulses(j);
 		joint_prune(j);
 		joint_fit_all(j);
 		full = are_more(j);
 	}
-	if (joint_spent(j))
-		return JOINT_SPENT;
 	*m = j->m;
 	finish(j, full, pulses, result);
 	return JOINT_OK;
@@ -172,8 +170,6 @@ enum joint_status joint_adjust(struct joint *j, const struct joint_scene *s,
 	if (status != JOINT_OK)
 		return status;
 	joint_fit_all(j);
-	if (joint_spent(j))
-		return JOINT_SPENT;
 	qsort(j->pulse, (size_t)m, sizeof *j->pulse, by_time);
 	memcpy(pulses, j->pulse, (size_t)m * sizeof *pulses);
 	*chi2 = j->result.chi2;
@@ -188,7 +184,6 @@ enum joint_status joint_refine(struct joint *j, const struct joint_scene *s,
 
 	if (status != JOINT_OK)
 		return status;
-	j->scene.most = 0;
 	joint_fit_all(j);
 	finish(j, 0, pulses, result);
 	return JOINT_OK;

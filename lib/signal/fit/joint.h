@@ -61,9 +61,6 @@ struct joint_scene {
 	 * the record); lost: share of the variance of the noise that the filter removed.
 	 */
 	double low, lost;
-	/* joint_work() above which joint_fit() and joint_adjust() end with JOINT_SPENT;
-	 * 0: none. */
-	double most;
 	/* Samples that are not known, 1 in these n flags of either channel; NULL: none.
 	 */
 	const unsigned char *hidden[2];
@@ -107,7 +104,7 @@ struct joint_result {
 	long searches; /* matched-filter searches */
 };
 
-enum joint_status { JOINT_OK, JOINT_MEMORY, JOINT_DOMAIN, JOINT_SPENT };
+enum joint_status { JOINT_OK, JOINT_MEMORY, JOINT_DOMAIN };
 
 struct joint;
 struct joint *joint_new(void);
@@ -115,7 +112,7 @@ void joint_free(struct joint *joint);
 
 /* Finds pulses; the *m already in pulses (0 to max_pulses) are kept as first guesses.
  * On return they are sorted by t, with cov.  JOINT_DOMAIN if a parameter of the scene is
- * out of range; then, and after JOINT_SPENT, pulses are as they were. */
+ * out of range. */
 enum joint_status joint_fit(struct joint *joint, const struct joint_scene *scene,
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int *m,
 	struct joint_result *result);

@@ -271,7 +271,7 @@ void joint_swap_pulses(struct joint *j)
 	for (int i = 0; i < j->m; i++)
 		j->pulse[i].exchange = 0;
 	for (int i = 0; i < j->m; i++)
-		for (int k = i + 1; k < j->m && !joint_spent(j); k++)
+		for (int k = i + 1; k < j->m; k++)
 			try_swap(j, i, k);
 }
 

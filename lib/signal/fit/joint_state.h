@@ -86,12 +86,6 @@ struct candidate {
 	double t, delta, a, z2;
 };
 
-/* 1 if the scene does not allow more work. */
-static inline int joint_spent(const struct joint *j)
-{
-	return j->scene.most > 0 && j->work > j->scene.most;
-}
-
 static inline double clamp(double x, double lo, double hi)
 {
 	return x < lo ? lo : x > hi ? hi : x;
@@ -153,8 +147,7 @@ void joint_hide(const struct joint *joint, int channel, long first, size_t n, do
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 
-/* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square.  Ends
- * early if joint_spent(). */
+/* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
 double joint_fit_set(
 	struct joint *j, const int *set, int m, int max_steps, double tolerance);
 void joint_fit_all(struct joint *j); /* sets chi-square */

@@ -241,7 +241,7 @@ double joint_fit_set(
 	chi2 = joint_chi_square(j);
 	for (int x = 0; x < m; x++)
 		joint_make_columns(j, set[x]);
-	for (int step = 0; step < max_steps && m > 0 && !joint_spent(j); step++) {
+	for (int step = 0; step < max_steps && m > 0; step++) {
 		double after;
 
 		if (!fresh)

@@ -102,13 +102,11 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 		pick_sections(ex, y1, y2, n, most, 1, c);
 }
 
-/* Returns the status of a fit, and stores it if memory was short or the work too much. */
-static enum joint_status note_failure(struct examples *ex, enum joint_status status)
+/* Returns the status of a fit, and stores it if memory was short. */
+static enum joint_status note_memory(struct examples *ex, enum joint_status status)
 {
 	if (status == JOINT_MEMORY)
 		ex->status = SEPARATE_MEMORY;
-	if (status == JOINT_SPENT)
-		ex->status = SEPARATE_HARD;
 	return status;
 }
 
@@ -132,7 +130,6 @@ static const struct joint_scene *scene_of(struct examples *ex, const struct exam
 {
 	ex->present = ex->scene;
 	ex->present.gain = examples_gain(ex, e);
-	ex->present.most = ex->most - ex->before;
 	for (int c = 0; c < 2; c++) {
 		ex->present.tone_knot[c] = 0.5 * ex->scene.tone_hop -
 					   (double)(e->begin + (c ? ex->shift : 0));
@@ -144,8 +141,8 @@ static const struct joint_scene *scene_of(struct examples *ex, const struct exam
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result)
 {
-	return note_failure(ex, joint_refine(ex->joint, scene_of(ex, e), e->y1, e->y2,
-					e->n, pulse, e->m, result));
+	return note_memory(ex, joint_refine(ex->joint, scene_of(ex, e), e->y1, e->y2,
+				       e->n, pulse, e->m, result));
 }
 
 double examples_chi2(struct examples *ex)
@@ -160,9 +157,8 @@ double examples_chi2(struct examples *ex)
 		if (!may_go_on(ex))
 			return INFINITY;
 		memcpy(e->trial, e->pulse, sizeof e->trial);
-		if (note_failure(ex, joint_adjust(ex->joint, scene_of(ex, e), e->y1,
-					     e->y2, e->n, e->trial, e->m, &chi2)) !=
-			JOINT_OK)
+		if (note_memory(ex, joint_adjust(ex->joint, scene_of(ex, e), e->y1, e->y2,
+					    e->n, e->trial, e->m, &chi2)) != JOINT_OK)
 			return INFINITY;
 		sum += chi2;
 	}
@@ -361,7 +357,7 @@ double examples_fit(struct examples *ex, double misfit)
 
 		if (!may_go_on(ex))
 			return INFINITY;
-		if (note_failure(ex, fit_example(ex, e, &result)))
+		if (note_memory(ex, fit_example(ex, e, &result)))
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;
