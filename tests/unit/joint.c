@@ -267,6 +267,59 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 		"a scene of zeros contains no pulses");
 }
 
+enum { VARIANTS = 10 };
+
+/* Scene number i of those whose tones and baselines differ in one respect each. */
+static struct joint_scene scene_with_basis(const struct joint_scene *plain, int i)
+{
+	struct joint_scene s = *plain;
+
+	if (i == 0)
+		return s;
+	s.tones = i == 1 ? 1 : 2;
+	s.omega[0] = i == 2 ? 0.02 : 0.03;
+	s.omega[1] = 0.05;
+	if (i > 3) {
+		s.tone_variance = i == 4 ? 0.02 : 0.01;
+		s.tone_hop = i == 5 ? 150 : 200;
+		s.tone_knot[0] = i == 6 ? 70 : 30;
+		s.tone_knot[1] = i == 7 ? 90 : 20;
+		s.low = i == 8 ? 0.002 : 0;
+	}
+	return s;
+}
+
+/* Fits in turn, more of them than bases are kept, and again, are those of new fits. */
+static void test_bases(struct joint *j, const struct joint_scene *plain)
+{
+	enum { LENGTHS = 5, BASES = LENGTHS * VARIANTS };
+	static double y[2][N];
+	const struct joint_pulse truth = { .t = 300, .delta = 3, .a = 20 };
+	int differ = 0, failed = 0;
+
+	memset(y, 0, sizeof y);
+	joint_add(plain, &truth, 1, y[0], y[1], N);
+	for (unsigned c = 0; c < 2; c++)
+		add_noise(y[c], 5000, c);
+	for (int k = 0; k < 3 * BASES; k++) {
+		size_t n = N - (size_t)(k / VARIANTS % LENGTHS);
+		struct joint_scene s = scene_with_basis(plain, k % VARIANTS);
+		struct joint *fresh = joint_new();
+		struct joint_pulse p[2][20] = { { truth }, { truth } };
+		struct joint_result r[2];
+
+		failed += joint_refine(j, &s, y[0], y[1], n, p[0], 1, &r[0]) != JOINT_OK;
+		failed += joint_refine(fresh, &s, y[0], y[1], n, p[1], 1, &r[1]) !=
+			  JOINT_OK;
+		differ += r[0].chi2 != r[1].chi2 || r[0].dof != r[1].dof ||
+			  p[0][0].t != p[1][0].t;
+		joint_free(fresh);
+	}
+	ok(failed == 0 && differ == 0,
+		"of %d fits to other tones and baselines in turn %d differ from new ones",
+		3 * BASES, differ);
+}
+
 /* A pulse of either sign, one of which is saturated: what is hidden does not bias it, and
  * its errors are those of the samples left. */
 static void test_hidden(struct joint *j, const struct joint_scene *plain)
@@ -453,6 +506,7 @@ int main(void)
 	struct joint *j = joint_new();
 
 	test_clean(j, &s);
+	test_bases(j, &s);
 	test_wide(j, &s);
 	test_bound(j, &s);
 	test_adjust(j, &s);

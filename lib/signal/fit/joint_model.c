@@ -28,9 +28,12 @@ static void free_samples(struct joint *j)
 		free(j->e[c]);
 		free(j->r[c]);
 		free(j->filter[c]);
-		free(j->basis_memory[c]);
-		j->e[c] = j->r[c] = j->filter[c] = j->basis_memory[c] = j->q[c] = NULL;
+		j->e[c] = j->r[c] = j->filter[c] = j->q[c] = NULL;
 	}
+	free(j->basis_memory);
+	j->basis_memory = NULL;
+	j->basis_used = 0;
+	j->nbases = 0;
 	j->capacity = 0;
 }
 
@@ -61,8 +64,8 @@ static enum joint_status reserve_samples(struct joint *j, size_t n)
 		if (!j->e[c] || !j->r[c] || !j->filter[c])
 			return JOINT_MEMORY;
 	}
-	j->basis_memory[0] = malloc(n * sizeof *j->basis_memory[0] * BASIS_MAX);
-	if (!j->basis_memory[0])
+	j->basis_memory = malloc(n * sizeof *j->basis_memory * BASIS_ROOM);
+	if (!j->basis_memory)
 		return JOINT_MEMORY;
 	j->capacity = n;
 	return JOINT_OK;
@@ -224,24 +227,107 @@ static void make_channel_basis(struct joint *j, int c)
 	}
 }
 
-/* Basis of offset, baseline and tones over n samples. */
-static enum joint_status make_basis(struct joint *j)
+/* 1 if the basis is that of the present scene over n samples. */
+static int is_basis(const struct joint *j, const struct basis *b, int differ)
 {
 	const struct joint_scene *s = &j->scene;
-	int differ = s->hidden[0] || s->hidden[1] ||
-		     (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
 
-	if (differ && !j->basis_memory[1])
-		j->basis_memory[1] =
-			malloc(j->capacity * sizeof *j->basis_memory[1] * BASIS_MAX);
-	if (differ && !j->basis_memory[1])
-		return JOINT_MEMORY;
+	return b->n == j->n && b->differ == differ && b->tones == s->tones &&
+	       b->variance == s->tone_variance && b->hop == s->tone_hop &&
+	       b->knot[0] == s->tone_knot[0] && b->knot[1] == s->tone_knot[1] &&
+	       b->low == s->low &&
+	       !memcmp(b->omega, s->omega, (size_t)s->tones * sizeof *s->omega);
+}
+
+static void keep_basis(struct joint *j, int differ)
+{
+	const struct joint_scene *s = &j->scene;
+	struct basis *b = &j->bases[j->nbases++];
+
+	*b = (struct basis){ .n = j->n,
+		.tones = s->tones,
+		.vectors = j->basis,
+		.differ = differ,
+		.variance = s->tone_variance,
+		.hop = s->tone_hop,
+		.knot = { s->tone_knot[0], s->tone_knot[1] },
+		.low = s->low,
+		.taken = j->taken,
+		.q = { j->q[0], j->q[1] } };
+	memcpy(b->omega, s->omega, sizeof b->omega);
+	memcpy(b->from, j->from, sizeof b->from);
+	memcpy(b->to, j->to, sizeof b->to);
+	j->basis_used += (size_t)(differ ? 2 : 1) * (size_t)j->basis * j->n;
+}
+
+static void use_basis(struct joint *j, const struct basis *b)
+{
+	j->basis = b->vectors;
+	j->taken = b->taken;
+	memcpy(j->from, b->from, sizeof j->from);
+	memcpy(j->to, b->to, sizeof j->to);
+	memcpy(j->q, b->q, sizeof j->q);
+}
+
+/* Basis of offset, baseline and tones over n samples.  To learn, the same samples are
+ * fitted again and again. */
+static void make_basis(struct joint *j)
+{
+	const struct joint_scene *s = &j->scene;
+	const int hidden = s->hidden[0] || s->hidden[1];
+	const int differ = hidden || (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
+
+	for (int i = 0; i < j->nbases && !hidden; i++)
+		if (is_basis(j, &j->bases[i], differ)) {
+			use_basis(j, &j->bases[i]);
+			return;
+		}
+	if (j->nbases == BASES ||
+		j->basis_used + 2 * BASIS_MAX * j->n > BASIS_ROOM * j->capacity)
+		j->nbases = 0;
+	if (j->nbases == 0)
+		j->basis_used = 0;
 	j->taken = 0;
-	for (int c = 0; c < 2; c++) {
-		j->q[c] = j->basis_memory[differ ? c : 0];
-		make_channel_basis(j, c);
+	j->q[0] = j->basis_memory + j->basis_used;
+	make_channel_basis(j, 0);
+	j->q[1] = j->q[0];
+	if (differ) {
+		j->q[1] += (size_t)j->basis * j->n;
+		make_channel_basis(j, 1);
+	} else {
+		j->taken *= 2;
+		memcpy(j->from[1], j->from[0], sizeof j->from[0]);
+		memcpy(j->to[1], j->to[0], sizeof j->to[0]);
 	}
-	return JOINT_OK;
+	if (!hidden)
+		keep_basis(j, differ);
+}
+
+/* Vectors that are not 0 in the same samples, as those of waves over the whole record and
+ * of one knot, are taken three at a time. */
+void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
+	double *along)
+{
+	const size_t *from = j->from[c], *to = j->to[c];
+	int b = 0;
+
+	while (b < j->basis) {
+		const double *q = j->q[c] + (size_t)b * j->n;
+		long begin = first > (long)from[b] ? first : (long)from[b];
+		long end = first + (long)n < (long)to[b] ? first + (long)n : (long)to[b];
+
+		if (b + 3 > j->basis || from[b] != from[b + 1] ||
+			from[b] != from[b + 2] || to[b] != to[b + 1] ||
+			to[b] != to[b + 2] || end <= begin) {
+			along[b] = joint_along_basis(j, c, b, first, x, n);
+			b++;
+			continue;
+		}
+		q += begin;
+		dot3(x + (begin - first), (const double *[]){ q, q + j->n, q + 2 * j->n },
+			(size_t)(end - begin), along + b);
+		b += 3;
+	}
 }
 
 void joint_measure(struct joint *j)
@@ -249,8 +335,7 @@ void joint_measure(struct joint *j)
 	j->energy = 0;
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
-		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] = joint_along_basis(j, c, b, 0, j->e[c], j->n);
+		joint_along_all(j, c, 0, j->e[c], j->n, j->qe[c]);
 	}
 }
 
@@ -428,10 +513,9 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	memcpy(j->pulse, pulses, (size_t)m * sizeof *pulses);
 	for (int c = 0; c < 2; c++)
 		joint_hide(j, c, 0, n, j->e[c]);
-	status = make_basis(j);
-	if (status == JOINT_OK)
-		joint_subtract_all(j, 1);
-	return status;
+	make_basis(j);
+	joint_subtract_all(j, 1);
+	return JOINT_OK;
 }
 
 double joint_work(const struct joint *j)

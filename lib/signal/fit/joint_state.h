@@ -14,6 +14,7 @@ enum {
 	NPAR = PAR * JOINT_PULSES_MAX,
 	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1,
 	PAIR_GAPS = 12,
+	BASIS_ROOM = 4 * BASIS_MAX,
 	PAIR_KNOTS = 2 * PAIR_GAPS /* of either channel */
 };
 
@@ -28,6 +29,16 @@ struct column {
  * and inner products less what the fitted pulses take of them. */
 struct pair_table {
 	double along[PAIR_KNOTS], gram[PAIR_KNOTS][PAIR_KNOTS];
+};
+
+/* Bases of the last fits, which are made again for the next fit to the same samples. */
+enum { BASES = 32 };
+struct basis {
+	size_t n;
+	int tones, vectors, differ;
+	double omega[JOINT_TONES_MAX], variance, hop, knot[2], low, taken;
+	size_t from[2][BASIS_MAX], to[2][BASIS_MAX];
+	double *q[2];
 };
 
 struct joint {
@@ -48,7 +59,10 @@ struct joint {
 	double taken; /* degrees of freedom that they take, without the baseline's */
 	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
 	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
-	double *basis_memory[2];
+	double *basis_memory;                        /* BASIS_ROOM of capacity */
+	size_t basis_used;                           /* of it, by bases[0 .. nbases) */
+	struct basis bases[BASES];
+	int nbases;
 	double *memory;  /* columns of all pulses */
 	double *scratch; /* three of support */
 	double *excess;  /* PAIR_KNOTS of support */
@@ -110,6 +124,10 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	int m);
 /* Room for columns of pulses in the range of delays of this scene. */
 enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s);
+/* The inner products of all vectors of a channel's basis with x[0 .. n), whose first
+ * sample is sample first, as joint_along_basis() has them. */
+void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
+	double *along);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);

@@ -179,10 +179,12 @@ static void count_span(struct joint *j, int c, long from, long to, double sign)
 {
 	const double *e = j->e[c] + from;
 	size_t n = (size_t)(to - from);
+	double part[BASIS_MAX];
 
 	j->energy += sign * dot(e, e, n);
+	joint_along_all(j, c, from, e, n, part);
 	for (int b = 0; b < j->basis; b++)
-		j->qe[c][b] += sign * joint_along_basis(j, c, b, from, e, n);
+		j->qe[c][b] += sign * part[b];
 }
 
 /* Moves the pulses in set along j->move, and stores their columns before the step in
