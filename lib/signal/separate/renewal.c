@@ -57,21 +57,11 @@ struct renewal {
 	size_t changes, change_room;
 };
 
-/* Work of other stretches over that of the present one.  Where pulses described it, they
- * describe another one for as much: in the scenes slower-flow of tests/matrix/scenes.tsv
- * stretches that took its place took 0.1 to 1.1 times its work. */
-static const double TWICE = 2;
-
 /* Work that other stretches than the present one may still take: together as much as is
- * allowed in the record, and, if an instrument was learned, TWICE what that has taken. */
+ * allowed in the record. */
 static double work_left(const struct renewal *r)
 {
-	const struct separate *now = r->now.s;
-	double most = separate_allowed(now);
-
-	if (separate_calibration(now))
-		most = fmin(most, TWICE * separate_spent(now));
-	return most - r->spent;
+	return separate_allowed(r->now.s) - r->spent;
 }
 
 static struct separate *begin(
