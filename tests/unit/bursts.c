@@ -32,7 +32,7 @@ static void add_pulse(double at, double duration, double amplitude)
 
 static int found(void)
 {
-	return bursts_found(x, N, work);
+	return bursts_found(x, N, N, work);
 }
 
 static void test_noise(void)
@@ -98,7 +98,7 @@ static void test_silence(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 1;
 	ok(!found(), "a constant has no bursts");
-	ok(!bursts_found(x, 8, work), "nor has a record too short to tell");
+	ok(!bursts_found(x, 8, 8, work), "nor has a record too short to tell");
 }
 
 static struct bursts_power power_of(uint64_t seed, double constant, double scale)

@@ -34,11 +34,12 @@ static int exceeds(const double *d, size_t n)
 	return 0;
 }
 
+/* Samples in the shortest means. */
+enum { FIRST = 4 };
+
 /* Sums of the n samples in fours, to x, which are as good as means; their number. */
 static size_t sum_fours(const double *y, size_t n, double *x)
 {
-	enum { FIRST = 4 };
-
 	for (size_t i = 0; i < n / FIRST; i++) {
 		x[i] = 0;
 		for (size_t k = 0; k < FIRST; k++)
@@ -59,11 +60,12 @@ static double second_difference(const double *x)
 	return x[0] - 2 * x[1] + x[2];
 }
 
-int bursts_found(const double *y, size_t n, double *work)
+int bursts_found(const double *y, size_t n, size_t longest, double *work)
 {
 	size_t count = sum_fours(y, n, work);
 
-	for (; count >= AROUND + 2; count = sum_pairs(work, count)) {
+	for (size_t length = FIRST; count >= AROUND + 2 && length <= longest;
+		length *= 2, count = sum_pairs(work, count)) {
 		double d[AROUND];
 
 		for (size_t from = 0; from + 2 < count; from += AROUND) {

@@ -6,11 +6,11 @@
 
 #include <stddef.h>
 
-/* 1 if second differences of the means of 4, 8, 16 ... of the samples y[0 .. n) somewhere
- * exceed those of Gaussian noise of the same level nearby.  The noise may be coloured,
- * its level and that of the record may drift, and it may hold steady lines.  What
- * lasts longer than a hundredth of n samples is not found.  work holds n. */
-int bursts_found(const double *y, size_t n, double *work);
+/* 1 if second differences of the means of 4, 8, 16 ... longest of the samples y[0 .. n)
+ * somewhere exceed those of Gaussian noise of the same level nearby.  The noise may be
+ * coloured, its level and that of the record may drift, and it may hold steady lines.
+ * What lasts longer than a hundredth of n samples is not found.  work holds n. */
+int bursts_found(const double *y, size_t n, size_t longest, double *work);
 
 /* Mean squares of these second differences, for the means of 4, 8, 16 ... samples. */
 enum { BURSTS_OCTAVES = 32 };

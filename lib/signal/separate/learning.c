@@ -287,6 +287,21 @@ static enum separate_status learn_from(struct separate *s, size_t n, double most
 	return SEPARATE_FAST;
 }
 
+/* *found: 1 if a channel of the first n samples is more than noise in the means of
+ * longest samples or fewer. */
+static enum separate_status look_for_bursts(
+	const struct separate *s, size_t n, size_t longest, int *found)
+{
+	double *work = malloc((n + 1) * sizeof *work);
+
+	if (!work)
+		return SEPARATE_MEMORY;
+	*found = bursts_found(s->buffer[0].x, n, longest, work) ||
+		 bursts_found(s->buffer[1].x, n, longest, work);
+	free(work);
+	return SEPARATE_OK;
+}
+
 /* Least duration of a pulse, in means, if other components of the record are longer: the
  * more of these is learned from, the better. */
 enum { SHORT = 32 };
@@ -339,7 +354,7 @@ static const double FIRST = 0.25;
 static enum separate_status calibrate_now(struct separate *s, size_t n)
 {
 	size_t means;
-	int ratio = 1, again = s->awaited > 0;
+	int ratio = 1, again = s->awaited > 0, brief = 0;
 	enum separate_status status = SEPARATE_OK;
 
 	s->awaited = 0;
@@ -348,7 +363,10 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
 		return SEPARATE_MEMORY;
 	if (s->buffer[0].begin < s->averaged)
 		ratio = 1;
-	if (ratio > 1 && !again) {
+	if (ratio > 1 && !again &&
+		look_for_bursts(s, n, (size_t)ratio, &brief) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
+	if (brief) {
 		status = learn_from(s, n, FIRST * work_left(s, n));
 		if (status == SEPARATE_OK && s->cal.duration <= SEPARATE_LONG)
 			return start(s, n);
@@ -427,20 +445,6 @@ enum separate_status separate_learn_clearly(struct separate *s)
 	return few && s->par.learn < SEPARATE_LEARN ? SEPARATE_OK : SEPARATE_NO_LAG;
 }
 
-/* *found: 1 if a channel of the first n samples is more than noise. */
-static enum separate_status look_for_bursts(
-	const struct separate *s, size_t n, int *found)
-{
-	double *work = malloc((n + 1) * sizeof *work);
-
-	if (!work)
-		return SEPARATE_MEMORY;
-	*found = bursts_found(s->buffer[0].x, n, work) ||
-		 bursts_found(s->buffer[1].x, n, work);
-	free(work);
-	return SEPARATE_OK;
-}
-
 /* *again: 1 if the first n samples are noise, and like the last ones that had nothing in
  * common, from which nothing would be learned again; otherwise they are compared with. */
 static enum separate_status compare_with_noise(struct separate *s, size_t n, int *again)
@@ -456,7 +460,7 @@ static enum separate_status compare_with_noise(struct separate *s, size_t n, int
 	free(work);
 	*again = bursts_alike(&power[0], &s->nothing[0]) &&
 		 bursts_alike(&power[1], &s->nothing[1]);
-	if (*again && look_for_bursts(s, n, &found) != SEPARATE_OK)
+	if (*again && look_for_bursts(s, n, n, &found) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	*again = *again && !found;
 	if (!*again)
@@ -468,7 +472,7 @@ static enum separate_status compare_with_noise(struct separate *s, size_t n, int
  * to be noise. */
 static enum separate_status pass_over(struct separate *s, size_t n, int found)
 {
-	if (found && look_for_bursts(s, n, &found) != SEPARATE_OK)
+	if (found && look_for_bursts(s, n, n, &found) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	s->counters.unlearned += found ? (double)n : 0;
 	s->counters.passed_over += (double)n;
@@ -539,8 +543,8 @@ enum separate_status separate_learn(struct separate *s)
 			return status;
 		if (s->calibrated)
 			break;
-		if (look_for_bursts(s, lesser(s->buffer[0].n, s->par.learn), &found) !=
-			SEPARATE_OK)
+		if (look_for_bursts(s, lesser(s->buffer[0].n, s->par.learn), SIZE_MAX,
+			    &found) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		give_reason(s, status, found);
 		if (status != SEPARATE_NO_LAG || found)

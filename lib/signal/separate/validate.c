@@ -246,8 +246,9 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
 }
 
 /* What a pulse has to explain, on average, at the sensor that shows it less: there the
- * fit finds 2 in noise, at the best of the delays of a range shorter than a pulse. */
-static const double WEAKEST = SIGMAS_SELDOM * SIGMAS_SELDOM;
+ * fit finds 2 in noise, at the best of the delays of a range shorter than a pulse, with a
+ * variance of 4, and the mean of FEW seldom more than this. */
+static const double WEAKEST = 4;
 
 /* 1 if more than half of the latest rows are doubted, or more than a tenth lie at the
  * edge, or what they show at one sensor is noise. */

@@ -30,10 +30,10 @@ struct evidence {
 	int fits;          /* 0: doubted already by chi-square */
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
-	double weaker;     /* chi-square that it explains at the sensor that shows it less;
-			      0: unknown */
-	double time;       /* of arrival, durations; ascending within a group */
-	int doubted;       /* set by validation_test() */
+	double weaker; /* chi-square that it explains at the sensor that shows it less;
+			  0: unknown */
+	double time;   /* of arrival, durations; ascending within a group */
+	int doubted;   /* set by validation_test() */
 	/* For together.h, of fitted pulses: */
 	int pulse;                 /* 1: it is one */
 	double odds[JOINT_SHARES]; /* of being two, for one other arrival per duration */
