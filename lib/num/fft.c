@@ -1,4 +1,5 @@
 #include "num/fft.h"
+#include "num/lanes.h"
 #include "num/pages.h"
 #include <fftw3.h>
 #include <limits.h>
@@ -166,7 +167,7 @@ enum num_status fft_even(double *x, size_t n)
 }
 
 struct fft_plane {
-	size_t ny, columns;           /* columns: nx / 2 + 1 */
+	size_t nx, ny, columns;       /* columns: nx / 2 + 1 */
 	size_t points, width, height; /* strides of rows of points, of coefficients, and
 				       * of columns */
 	fftw_plan row_forward, row_inverse, columns_forward, columns_inverse;
@@ -209,6 +210,7 @@ struct fft_plane *fft_plane_new(size_t nx, size_t ny)
 
 	if (!p)
 		return NULL;
+	p->nx = nx;
 	p->ny = ny;
 	p->columns = nx / 2 + 1;
 	p->points = round_up(nx, 8);
@@ -237,21 +239,26 @@ struct fft_plane *fft_plane_new(size_t nx, size_t ny)
 void fft_plane_forward(const struct fft_plane *p, double *x, size_t first, size_t end,
 	double complex *spectrum, double complex *work)
 {
-	memset(work, 0, first * p->width * sizeof *work);
-	memset(work + end * p->width, 0, (p->ny - end) * p->width * sizeof *work);
-	for (size_t y = first; y < end; y++)
-		fftw_execute_dft_r2c(
-			p->row_forward, x + y * p->points, work + y * p->width);
+	for (size_t y = 0; y < p->ny; y++) {
+		double *row = x + y * p->points;
+		double complex *to = work + y * p->width;
+
+		if (y >= first && y < end && lanes_next(row, 0, p->nx) < p->nx)
+			fftw_execute_dft_r2c(p->row_forward, row, to);
+		else
+			memset(to, 0, p->columns * sizeof *to);
+	}
 	fftw_execute_dft(p->columns_forward, work, spectrum);
 }
 
 void fft_plane_inverse(const struct fft_plane *p, double complex *spectrum, double *x,
-	size_t first, size_t end, double complex *work)
+	const unsigned char *wanted, double complex *work)
 {
 	fftw_execute_dft(p->columns_inverse, spectrum, work);
-	for (size_t y = first; y < end; y++)
-		fftw_execute_dft_c2r(
-			p->row_inverse, work + y * p->width, x + y * p->points);
+	for (size_t y = 0; y < p->ny; y++)
+		if (wanted[y])
+			fftw_execute_dft_c2r(
+				p->row_inverse, work + y * p->width, x + y * p->points);
 }
 
 void fft_plane_done(struct fft_plane *p)

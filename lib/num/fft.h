@@ -56,12 +56,12 @@ struct fft_plane;
 struct fft_plane *fft_plane_new(size_t nx, size_t ny);
 size_t fft_plane_stride(const struct fft_plane *plane);
 size_t fft_plane_size(const struct fft_plane *plane);
-/* Rows [first, end) of x; the others are taken as zero. */
+/* Rows [first, end) of x; the others are taken as zero, and zero rows cost nothing. */
 void fft_plane_forward(const struct fft_plane *plane, double *x, size_t first, size_t end,
 	double complex *spectrum, double complex *work);
-/* Only rows [first, end) of x. */
+/* Only the rows of x with a flag; ny of these. */
 void fft_plane_inverse(const struct fft_plane *plane, double complex *spectrum, double *x,
-	size_t first, size_t end, double complex *work);
+	const unsigned char *wanted, double complex *work);
 void fft_plane_done(struct fft_plane *plane);
 
 /* Complex transform of one line of n points, from one array to another, each from

@@ -136,19 +136,10 @@ static inline lanes lanes_conj(lanes a)
 }
 
 /* The first element from i on that is not zero, or n. */
+size_t lanes_skip(const double *x, size_t i, size_t n);
 static inline size_t lanes_next(const double *x, size_t i, size_t n)
 {
-	for (; i + 8 <= n && x[i] == 0; i += 8) {
-		lane_words w[4], any;
-
-		memcpy(w, x + i, sizeof w);
-		any = (w[0] | w[1]) | (w[2] | w[3]);
-		if (any[0] | any[1])
-			break;
-	}
-	while (i < n && x[i] == 0)
-		i++;
-	return i;
+	return i < n && x[i] == 0 ? lanes_skip(x, i, n) : i;
 }
 
 /* sum += x, lane by lane */

@@ -42,9 +42,10 @@ struct tiling {
 	double complex *image, *product, *work;
 	double complex *kernel[STRESS_NUMBERS];
 	double *table; /* of each number, 2 reach_y + 1 rows of table_width(); or NULL */
-	unsigned char *wanted;
-	double *transforms; /* of each tile */
-	int made;           /* kernels transformed */
+	unsigned char *wanted; /* tiles; NULL: all */
+	unsigned char *row;    /* for each worker, the rows of points that are wanted */
+	double *transforms;    /* of each tile */
+	int made;              /* kernels transformed */
 };
 
 /* Points of a plane.  Kernels and plans that are kept serve more windows if the sizes are
@@ -345,6 +346,24 @@ static void add_loads(const struct tiling *t, const struct stress_part *part,
 	}
 }
 
+/* Flags the rows of points with wanted nodes of a part. */
+static void mark_rows(
+	const struct tiling *t, const struct stress_part *part, unsigned char *row)
+{
+	size_t rows = (size_t)(part->y1 - part->y0);
+	const struct stress_span *next;
+	struct stress_span run;
+
+	memset(row, 0, t->y.points);
+	if (!t->w->want) {
+		memset(row + t->y.lead, 1, rows);
+		return;
+	}
+	next = span_first(t->w->want, t->w->y0 + part->y0);
+	while (next_run(t, part, &next, &run))
+		row[run.y + t->y.lead] = 1;
+}
+
 static void sum_tile(void *context, size_t tile, int worker)
 {
 	const struct tiling *t = context;
@@ -378,13 +397,15 @@ static void sum_tile(void *context, size_t tile, int worker)
 	if (few.count > 0 && few.count <= few.most) {
 		add_loads(t, &part, &few, plane);
 	} else if (few.count > 0) {
+		unsigned char *row = t->row + at * t->y.points;
+
 		put_loads(t, &e, load);
+		mark_rows(t, &part, row);
 		fft_plane_forward(t->fft, load, (size_t)(e.bottom - e.low),
 			(size_t)(e.top - e.low), image, work);
 		for (int c = 0; c < w->numbers; c++, plane += t->room) {
 			multiply(image, t->kernel[c], product, t->spectrum);
-			fft_plane_inverse(t->fft, product, plane, lead,
-				lead + (size_t)(part.y1 - part.y0), work);
+			fft_plane_inverse(t->fft, product, plane, row, work);
 		}
 		t->transforms[tile] = 1 + w->numbers;
 	}
@@ -566,9 +587,10 @@ static enum num_status prepare(struct tiling *t, struct window_kept *kept)
 	if (share_memory(t, kept))
 		return NUM_MEMORY;
 	t->transforms = calloc(tiles, sizeof *t->transforms);
+	t->row = malloc((size_t)pool_threads(w->pool) * t->y.points);
 	if (w->want)
 		t->wanted = calloc(tiles, 1);
-	if (!t->transforms || (w->want && !t->wanted))
+	if (!t->transforms || !t->row || (w->want && !t->wanted))
 		return NUM_MEMORY;
 	if (w->want)
 		mark_wanted(t);
@@ -602,6 +624,7 @@ enum num_status window_sum(
 			*transforms += t.transforms[i];
 	}
 	free(t.wanted);
+	free(t.row);
 	free(t.transforms);
 	return status;
 }

@@ -2,6 +2,7 @@
 #include "num/cholesky.h"
 #include "num/dot.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include "num/parabola.h"
 #include "num/philox.h"
 #include "num/pool.h"
@@ -349,9 +350,72 @@ static void test_standing(void)
 	gsl_rng_free(rng);
 }
 
+/* Every place of one element other than zero, every start and every length: blocks of all
+ * sizes begin and end anywhere.  A negative zero is a zero, nan is not. */
+static void test_next(void)
+{
+	enum { N = 80 };
+	static const double marks[] = { 1e-310, -1, NAN };
+	size_t wrong = 0;
+
+	for (size_t at = 0; at <= N; at++)
+		for (size_t start = 0; start <= N; start++) {
+			double x[N + 1] = { 0 };
+			size_t n = N - (at + start) % 7, want = n;
+
+			x[at / 2] = -0.0;
+			x[at] = marks[at % 3];
+			if (at >= start && at < n)
+				want = at;
+			wrong += start <= n && lanes_next(x, start, n) != want;
+		}
+	ok(wrong == 0, "the next element other than zero is found at any place");
+}
+
+/* A plane of which some rows are zero, and some are not wanted, there and back. */
+static void test_plane(void)
+{
+	enum { NX = 12, NY = 10 };
+	struct fft_plane *p = fft_plane_new(NX, NY);
+	size_t stride = fft_plane_stride(p), size = fft_plane_size(p);
+	double *x = fft_alloc(stride * NY), *y = fft_alloc(stride * NY), off = 0,
+	       kept = 0;
+	double complex *spectrum = fft_alloc_complex(size),
+		       *work = fft_alloc_complex(size);
+	unsigned char wanted[NY] = { [1] = 1, [4] = 1, [9] = 1 };
+
+	for (size_t i = 0; i < NX; i++) {
+		x[2 * stride + i] = (double)(i * i % 7);
+		x[4 * stride + i] = (double)(i % 5) - 2;
+	}
+	for (size_t i = 0; i < stride * NY; i++)
+		y[i] = 1000;
+	fft_plane_forward(p, x, 1, 6, spectrum, work);
+	fft_plane_inverse(p, spectrum, y, wanted, work);
+	for (size_t row = 0; row < NY; row++)
+		for (size_t i = 0; i < NX; i++) {
+			double *at = &y[row * stride + i];
+
+			if (wanted[row])
+				off = fmax(
+					off, fabs(*at / (NX * NY) - x[row * stride + i]));
+			else
+				kept += *at == 1000;
+		}
+	ok(off < 1e-14, "wanted rows of a plane come back, with rows of zeros (%g)", off);
+	ok(kept == (NY - 3) * NX, "other rows are left alone");
+	fft_plane_done(p);
+	fft_free(x);
+	fft_free(y);
+	fft_free(spectrum);
+	fft_free(work);
+}
+
 int main(void)
 {
 	test_room();
+	test_next();
+	test_plane();
 	test_philox();
 	test_philox_row();
 	test_rng();
