@@ -87,6 +87,11 @@ static void test_pulses(void)
 	make_noise(1, 0);
 	x[N / 2] += 40;
 	ok(found(), "an impulse of one sample");
+	ok(bursts_found(x, N, 4, work), "... in the shortest means");
+	make_noise(1, 0);
+	add_pulse(N / 2, 500, 40);
+	ok(found(), "a pulse of 500 samples");
+	ok(!bursts_found(x, N, 8, work), "... which no means of eight samples show");
 	make_noise(1, 0);
 	x[3] += 45;
 	x[N - 3] += 45;

@@ -245,6 +245,29 @@ static void test_edge(void)
 	validation_free(v);
 }
 
+/* Pulses explain so much at the sensor that shows them less. */
+static double doubted_of(double weaker)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+	double share;
+
+	validation_range(v, 600, -6, 6);
+	draw(e, 0, 0.1, 150000);
+	for (int i = 0; i < ROWS; i++)
+		e[i].weaker = weaker;
+	validation_test(v, e, ROWS);
+	share = doubted(e, 0, ROWS);
+	validation_free(v);
+	return share;
+}
+
+static void test_one_sensor(void)
+{
+	ok(doubted_of(2) == 1, "no row is believed if one sensor shows noise alone");
+	ok(doubted_of(7) < 0.02, "rows are believed if both sensors show the pulses");
+}
+
 int main(void)
 {
 	for (uint64_t seed = 0; seed < 5; seed++) {
@@ -262,5 +285,6 @@ int main(void)
 	test_crowd(3, 10000, 22);
 	test_crowd(3, 40, 23);
 	test_edge();
+	test_one_sensor();
 	return tap_done();
 }
