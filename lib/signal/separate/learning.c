@@ -343,9 +343,10 @@ static enum separate_status learn_from_means(
 }
 
 /* Share of the work of learning after which pulses that seem long are looked for in
- * means: there it takes less.  With an eighth, bubbles are learned instead of the shorter
- * pulses of particles among them (tests/events.t); a half takes twice the time where hum
- * hides long pulses (rate-100k-hum of tests/matrix/scenes.tsv). */
+ * means, if the record holds events that these hide: there it takes less.  With an
+ * eighth, bubbles are learned instead of the shorter pulses of particles among them
+ * (tests/events.t); a half takes twice the time where hum hides long pulses
+ * (rate-100k-hum of tests/matrix/scenes.tsv). */
 static const double FIRST = 0.25;
 
 /* Learns from the n oldest samples, even if more have arrived at once.  If the pulses
