@@ -23,6 +23,7 @@
 #define SIGNAL_JOINT_H
 
 #include "signal/pulse/shape.h"
+#include <math.h>
 #include <stddef.h>
 
 enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
@@ -76,6 +77,13 @@ static inline double joint_duration(const struct joint_scene *s, double delta, i
 static inline double joint_energy(const struct joint_scene *s)
 {
 	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain * s->width);
+}
+
+/* The same at the sensor that shows it less. */
+static inline double joint_energy_least(const struct joint_scene *s)
+{
+	return s->duration * shape_energy(s->shape) *
+	       fmin(1, s->gain * s->gain * s->width);
 }
 
 struct joint_pulse {

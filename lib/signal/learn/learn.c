@@ -596,8 +596,7 @@ static int are_halves(const struct examples *ex)
  * pulse has to: what one sensor alone shows has no transit time. */
 static int shows_at_both(const struct examples *ex)
 {
-	const double square = ex->scene.gain * ex->scene.gain;
-	const double share = fmin(square, 1) / (1 + square);
+	double share = joint_energy_least(&ex->scene) / joint_energy(&ex->scene);
 
 	return share * ex->energy >= ex->scene.threshold_near * examples_pulses(ex);
 }

@@ -33,14 +33,6 @@ static void tell_phase(
 			size;
 }
 
-/* Chi-square that a pulse of this amplitude explains at the sensor that shows it less. */
-static double weaker_of(const struct joint_scene *s, double a)
-{
-	const double square = s->gain * s->gain;
-
-	return a * a * joint_energy(s) * fmin(square, 1) / (1 + square);
-}
-
 static enum separate_status emit_pulse(struct separate *s, const struct joint_pulse *p,
 	long long from, int sources, double chi2, enum separate_verdict verdict)
 {
@@ -76,7 +68,7 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
 		.amplitude = p->a,
-		.weaker = weaker_of(&s->scene, p->a),
+		.weaker = p->a * p->a * joint_energy_least(&s->scene),
 		.time = ((double)from + p->t) / s->cal.duration,
 		.pulse = 1 };
 	/* Within its standard error a delay is right either way. */
