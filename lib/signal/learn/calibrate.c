@@ -411,6 +411,7 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 {
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n };
 	struct velocities v = { 0 };
+	int broad;
 	enum separate_status status = SEPARATE_HARD;
 
 	memset(c, 0, sizeof *c);
@@ -419,11 +420,12 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	if (!par->filter && isnan(par->lag) && isnan(par->spread) &&
 		isnan(par->duration) && find_velocities(&look, &v) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
-	if (v.slow * (1 - CALIBRATE_WIDE) > v.fast * (1 + CALIBRATE_WIDE))
+	broad = v.slow * (1 - CALIBRATE_WIDE) > v.fast * (1 + CALIBRATE_WIDE);
+	if (broad)
 		status = try_velocities(&look, &v, c);
 	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
 		status = find(&look, c);
-	if (status == SEPARATE_NO_LAG && v.ratio > 0)
+	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
 		status = try_velocities(&look, &v, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
