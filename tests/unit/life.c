@@ -681,6 +681,13 @@ static double turned(double x)
 	return 0.3 * x + 0.7 * pow(fmax(0, x - 0.8) / 0.2, 1.5);
 }
 
+/* Kachanov's damage at a constant load, dD/dt = c / (1 - D)^3, up to the threshold at
+ * 0.62: it grows ever faster, as cracks do in a body of finite width. */
+static double failing(double x)
+{
+	return 1 - pow(1 - 0.98 * x, 0.25);
+}
+
 /* Of 20 quiet series of a curve, its rows even from 0 to 1, where the threshold is, after
  * the first read of them: how many ends are within the 90 % interval of these
  * coordinates, without changes of the rate if they are straight lines, and its mean width
@@ -738,6 +745,10 @@ static void test_bent_wear(void)
 	/* one particle has nearly all the weight here */
 	inside = ends_inside(turned, 400, 336, 0.0005, BANK_ALL, &width);
 	ok(inside >= 16, "and %d of wear that has turned, in %.1f", inside, width);
+	/* no coordinate follows this curve to its end, 7 rows later */
+	inside = ends_inside(failing, 100, 93, 0.002, BANK_ALL, &width);
+	ok(inside >= 16 && width < 10, "and %d of damage that ends in a failure, in %.1f",
+		inside, width);
 }
 
 /* The mean width of the 90 % intervals of Wiener processes of rate 1 / 120 a row, with

@@ -39,14 +39,14 @@ static const double GROWTH_SD = 2.5; /* of its logarithm */
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
 
-/* Beyond the damage that has been reached, the wear may follow another curve than the
- * coordinate.  This stands for all curves near it, and in quiet data it alone has the
- * weight, though others may fit as well.  Where the rate of the damage changes by e as an
- * average over the way, the logarithm of the time has the sd STRAY, and its median is
- * LEAN less: most wear bends more than its coordinate, because straight coordinates have
- * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
- * tells. */
-static const double STRAY = 0.24, LEAN = 0.078;
+/* The wear may follow another curve than the coordinate: beyond the damage that has been
+ * reached, and since the rows from which the rate is known.  This stands for all curves
+ * near it, and in quiet data it alone has the weight, though others may fit as well.
+ * Where the rate of the damage changes by e as an average over this way, the logarithm of
+ * the time has the sd STRAY, and its median is LEAN less: most wear bends more than its
+ * coordinate, because straight coordinates have more weight.  Both were swept, as
+ * doc/benchmarks.md tells. */
+static const double STRAY = 0.2, LEAN = 0.05;
 
 struct bank_chances {
 	int n;
@@ -173,13 +173,24 @@ static double hasten(double time, double growth)
 	return growth > 0 ? log1p(growth * time) / growth : time;
 }
 
-/* How the time to a level strays because the curve of the damage on the way there is not
- * known, of which a growth is a part; h: of the present damage.  A straight line does not
- * stray, and what the trends leave uncertain is a part of it. */
-static void let_stray(struct crossing *p, double h, double spread)
+/* Change of the logarithm of the rate from the middle of the rows from which a trend
+ * knows its rate v to now, by the bend of the coordinate here. */
+static double past_bend(
+	const struct bank *b, const struct trend *tr, const struct place *here, double v)
+{
+	double ago = (b->age - tr->onset) / (2 + kinds[tr->kind].memory),
+	       change = -here->bend / here->slope * v * ago;
+
+	return copysign(log1p(fabs(change)), change);
+}
+
+/* How the time to a level strays because the curve of the damage is not known, of which a
+ * growth is a part; h: of the present damage; past: see past_bend().  A straight line
+ * does not stray, and what the trends leave uncertain is a part of it. */
+static void let_stray(struct crossing *p, double h, double past, double spread)
 {
 	double v = p->line[LINE_V], time = (p->limit - h) / v,
-	       bend = log(p->straight / v / hasten(time, p->growth));
+	       bend = log(p->straight / v / hasten(time, p->growth)) + past;
 
 	if (!isfinite(bend))
 		return;
@@ -218,7 +229,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
 	else /* the path of another unit is known to its end */
-		let_stray(&p, here.h, spread);
+		let_stray(&p, here.h, past_bend(b, tr, &here, p.line[LINE_V]), spread);
 	return p;
 }
 
