@@ -59,27 +59,69 @@ enum num_status population_draw(const struct population *p, double volume, doubl
 	}
 }
 
-/* Midpoints in ln d: N falls by the difference from step to step. */
+/* The particles of one class of ln d: N falls by their number from end to end. */
+static void add_class(const struct population *p, const struct abrasion_par *par,
+	double low, double high, struct population_mean *m)
+{
+	double number = par->gap * (line(p, exp(low)) - line(p, exp(high)));
+	struct abrasion a;
+
+	abrasion_particle(par, exp(0.5 * (low + high)), 1, &a);
+	if (!isnan(a.load))
+		m->pressure += number * a.load;
+	if (a.mode == ABRASION_YIELDS || a.mode == ABRASION_BURIED)
+		m->undescribed += number;
+	for (int k = 0; k < 2; k++)
+		if (!isnan(a.section[k]))
+			m->section[k] += number * a.section[k];
+}
+
+static enum abrasion_mode mode_at(const struct abrasion_par *par, double ln)
+{
+	struct abrasion a;
+
+	abrasion_particle(par, exp(ln), 1, &a);
+	return a.mode;
+}
+
+/* Between low and high, where the mode is another one: from where on. */
+static double mode_ends(const struct abrasion_par *par, double low, double high)
+{
+	enum abrasion_mode first = mode_at(par, low);
+
+	for (int k = 0; k < 40; k++) {
+		double middle = 0.5 * (low + high);
+
+		if (mode_at(par, middle) == first)
+			low = middle;
+		else
+			high = middle;
+	}
+	return high;
+}
+
+/* By midpoints.  Loads and sections jump with the mode. */
 void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
 	struct population_mean *m)
 {
 	double from = log(fmax(par->gap, p->diameter[0])), to = log(p->largest);
+	double low = from;
+	enum abrasion_mode mode = mode_at(par, low), next;
 
 	*m = (struct population_mean){ 0 };
 	for (size_t i = 0; i < n && from < to; i++) {
-		double low = from + (to - from) * (double)i / (double)n;
 		double high = from + (to - from) * (double)(i + 1) / (double)n;
-		double number = par->gap * (line(p, exp(low)) - line(p, exp(high)));
-		struct abrasion a;
 
-		abrasion_particle(par, exp(0.5 * (low + high)), 1, &a);
-		if (!isnan(a.load))
-			m->pressure += number * a.load;
-		if (a.mode == ABRASION_YIELDS || a.mode == ABRASION_BURIED)
-			m->undescribed += number;
-		for (int k = 0; k < 2; k++)
-			if (!isnan(a.section[k]))
-				m->section[k] += number * a.section[k];
+		next = mode_at(par, high);
+		if (mode != next) {
+			double jump = mode_ends(par, low, high);
+
+			add_class(p, par, low, jump, m);
+			low = jump;
+		}
+		add_class(p, par, low, high, m);
+		low = high;
+		mode = next;
 	}
 }
 

@@ -31,6 +31,8 @@ struct footprint {
 	double change; /* of the volume by a relative one of the stress below it, to first
 			* order, m3 */
 	double sums;   /* standard error of the volume by the direct sums, m3 */
+	double jumps;  /* standard error of the volume by cells that may end at another
+			* depth, m3 */
 };
 
 struct footprints;

@@ -51,6 +51,18 @@ static int is_far(const struct reserve *r)
 	return most + 0.5 * (fabs(r->g[0] - r->g[1]) + fabs(r->g[1] - r->g[2])) < 1;
 }
 
+double reserve_peak(const struct reserve *r, double *z)
+{
+	double bend = bend_of(r), b, top;
+
+	if (!(bend < 0))
+		return -INFINITY;
+	b = slope_before(r, 1) - bend * (r->z[1] - r->z[2]);
+	top = -b / (2 * bend);
+	*z = r->z[2] + top;
+	return top > 0 && *z < r->z[0] ? r->g[2] - b * b / (4 * bend) : -INFINITY;
+}
+
 double reserve_dip(const struct reserve *r)
 {
 	double z0 = r->z[2], z1 = r->z[1], z2 = r->z[0], bend, b, c, most;

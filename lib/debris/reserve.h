@@ -21,6 +21,9 @@ double reserve_crossing(const struct reserve *r);
 /* Where it first does on the parabola through three depths at which it is below 1; < 0:
  * nowhere. */
 double reserve_dip(const struct reserve *r);
+/* The largest reserve on the parabola through three depths, and its depth, if that is
+ * between them; else -INFINITY. */
+double reserve_peak(const struct reserve *r, double *z);
 /* Its slope at z, on the line or parabola through the depths. */
 double reserve_slope(const struct reserve *r, double z);
 

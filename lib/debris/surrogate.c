@@ -1,4 +1,5 @@
 #include "debris/surrogate.h"
+#include "num/deviates.h"
 #include "num/lanes.h"
 #include "num/lesser.h"
 
@@ -41,30 +42,46 @@ static int ascending(const void *a, const void *b)
 }
 
 /* Sorts the scores and keeps as many quantiles of them as fit. */
-static int keep_scores(double *all, size_t n, double *kept)
+static void keep_scores(double *all, size_t n, struct surrogate_scores *kept)
 {
 	int most = n < SURROGATE_SCORES ? (int)n : SURROGATE_SCORES;
 
 	qsort(all, n, sizeof *all, ascending);
 	for (int i = 0; i < most; i++)
-		kept[i] = all[(size_t)(((double)i + 0.5) * (double)n / most)];
-	return most;
+		kept->score[i] = all[(size_t)(((double)i + 0.5) * (double)n / most)];
+	kept->count = most;
 }
 
 /* Conformal bound: the k-th largest score, k = floor((1 - level) (n + 1)).  nan: there is
  * none. */
-static double bound(const double *score, int n, double level)
+static double bound(const struct surrogate_scores *s, double level)
 {
-	int k = (int)floor((1 - level) * (n + 1) + 1e-9);
+	int n = s->count, k = (int)floor((1 - level) * (n + 1) + 1e-9);
 
-	return k > 0 && k <= n ? score[n - k] : NAN;
+	return k > 0 && k <= n ? s->score[n - k] : NAN;
+}
+
+/* The bound of a class.  If the fit has too few surfaces of it, that of the other one,
+ * but at least the quantile of normal errors, as the deviations are standard errors. */
+static double bound_of(
+	const struct surrogate_scores *s, enum surrogate_class class, double level)
+{
+	double own = bound(&s[class], level),
+	       other = bound(&s[SURROGATE_SAMPLED - class], level);
+
+	if (!isnan(own) || isnan(other))
+		return own;
+	return fmax(other, normal_quantile(0.5 + 0.5 * level));
 }
 
 double surrogate_highest_level(const struct surrogate *s)
 {
-	int n = s->particles < s->totals ? s->particles : s->totals;
+	int most = 0;
 
-	return 1 - 1.0 / (n + 1);
+	for (int c = 0; c < SURROGATE_CLASSES; c++)
+		most = larger_int(
+			most, lesser_int(s->particle[c].count, s->total[c].count));
+	return 1 - 1.0 / (most + 1);
 }
 
 /* Some or all regions of a surface.  The errors of cells left out are independent, those
@@ -78,7 +95,7 @@ static void add_to(struct sum *sum, const struct footprint *f)
 	double square = f->error * f->error;
 
 	sum->volume += f->volume;
-	sum->squares += square;
+	sum->squares += square + f->jumps * f->jumps;
 	sum->fourths += square > 0 ? square * square / f->freedom : 0;
 	sum->sums += f->sums;
 }
@@ -97,19 +114,24 @@ static double student(double freedom)
  * freedom of a sum are those of Welch (1947). */
 static double deviation_of(const struct sum *sum)
 {
-	double left_out = 0;
+	double left_out = sqrt(sum->squares);
 
-	if (sum->squares > 0)
-		left_out = sqrt(sum->squares) *
-			   student(sum->squares * sum->squares / sum->fourths);
+	if (sum->fourths > 0)
+		left_out *= student(sum->squares * sum->squares / sum->fourths);
 	return hypot(left_out, sum->sums) / sum->volume;
 }
 
-static double deviation_of_one(const struct footprint *f)
+static enum surrogate_class class_of(const struct sum *sum)
+{
+	return sum->fourths > 0 ? SURROGATE_SAMPLED : SURROGATE_MEASURED;
+}
+
+static double deviation_of_one(const struct footprint *f, enum surrogate_class *class)
 {
 	struct sum sum = { 0 };
 
 	add_to(&sum, f);
+	*class = class_of(&sum);
 	return deviation_of(&sum);
 }
 
@@ -205,24 +227,27 @@ int surrogate_guess(const struct surrogate *s, const struct footprint *footprint
 	size_t count, const struct surrogate_contact *contact, double level,
 	struct surrogate_guess *guess, struct surrogate_guess *total)
 {
-	double one = bound(s->particle, s->particles, level),
-	       all = bound(s->total, s->totals, level);
 	struct sum sum = { 0 };
+	double all;
 
 	*total = (struct surrogate_guess){ 0 };
 	for (int k = 0; k < SURROGATE_PROPERTIES && count > 0; k++)
 		if (!is_between(contact->property[k], s->least[k], s->most[k]))
 			return 0;
-	if (isnan(one) || isnan(all))
-		return 0;
 	if (count == 0)
 		return 1;
 	for (size_t i = 0; i < count; i++) {
-		guess[i] = guess_of(
-			footprint[i].volume, one * deviation_of_one(&footprint[i]));
+		enum surrogate_class class;
+		double deviation = deviation_of_one(&footprint[i], &class);
+		double one = bound_of(s->particle, class, level);
+
+		if (isnan(one))
+			return 0;
+		guess[i] = guess_of(footprint[i].volume, one * deviation);
 		add_to(&sum, &footprint[i]);
 	}
-	if (!isfinite(sum.volume + sum.sums))
+	all = bound_of(s->total, class_of(&sum), level);
+	if (!isfinite(sum.volume + sum.sums + all))
 		return 0;
 	*total = guess_of(sum.volume, all * deviation_of(&sum));
 	return 1;
@@ -239,7 +264,8 @@ static size_t surface_end(const struct surrogate_sample *sample, size_t n, size_
 }
 
 /* For a surface: ln of the true over the estimated total, and its deviation. */
-static double total_error(const struct surrogate_sample *x, size_t n, double *deviation)
+static double total_error(const struct surrogate_sample *x, size_t n, double *deviation,
+	enum surrogate_class *class)
 {
 	struct sum sum = { 0 };
 	double truth = 0;
@@ -249,51 +275,63 @@ static double total_error(const struct surrogate_sample *x, size_t n, double *de
 		add_to(&sum, &x[i].footprint);
 	}
 	*deviation = deviation_of(&sum);
+	*class = class_of(&sum);
 	return log(truth / sum.volume);
 }
 
+/* The scores of one class. */
 static void calibrate(const struct surrogate_sample *sample, const char *held, size_t n,
-	struct surrogate *s, double *score)
+	enum surrogate_class class, struct surrogate *s, double *score)
 {
 	size_t count = 0, end;
+	enum surrogate_class its;
 
-	for (size_t i = 0; i < n; i++)
-		if (!held[i])
+	for (size_t i = 0; i < n; i++) {
+		double deviation = deviation_of_one(&sample[i].footprint, &its);
+
+		if (!held[i] && its == class)
 			score[count++] =
 				fabs(log(sample[i].volume / sample[i].footprint.volume)) /
-				deviation_of_one(&sample[i].footprint);
-	s->particles = keep_scores(score, count, s->particle);
+				deviation;
+	}
+	keep_scores(score, count, &s->particle[class]);
 	count = 0;
 	for (size_t i = 0; i < n; i = end) {
 		double deviation, error;
 
 		end = surface_end(sample, n, i);
-		if (held[i])
-			continue;
-		error = total_error(sample + i, end - i, &deviation);
-		score[count++] = fabs(error) / deviation;
+		error = total_error(sample + i, end - i, &deviation, &its);
+		if (!held[i] && its == class)
+			score[count++] = fabs(error) / deviation;
 	}
-	s->totals = keep_scores(score, count, s->total);
+	keep_scores(score, count, &s->total[class]);
 }
 
+/* Surfaces of a class that has too few scores are not estimated, and not checked. */
 static void check(const struct surrogate_sample *sample, const char *held, size_t n,
 	const struct surrogate *s, struct surrogate_report *r)
 {
-	double size = bound(s->total, s->totals, SURE), squares = 0;
+	double squares = 0;
 	size_t end;
 
+	r->checked = 0;
 	for (size_t i = 0; i < n; i = end) {
-		double deviation, error;
+		double deviation, error, size;
+		enum surrogate_class class;
 
 		end = surface_end(sample, n, i);
-		if (!held[i])
+		error = total_error(sample + i, end - i, &deviation, &class);
+		size = bound_of(s->total, class, SURE);
+		if (!held[i] || isnan(size))
 			continue;
-		error = total_error(sample + i, end - i, &deviation);
+		r->checked++;
 		r->within += fabs(error) <= size * deviation;
 		r->width += size * deviation;
 		squares += error * error;
 		r->most = fmax(r->most, fabs(error));
 	}
+	if (r->checked == 0)
+		return;
 	r->rms = sqrt(squares / (double)r->checked);
 	r->width /= (double)r->checked;
 }
@@ -319,11 +357,11 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 		end = surface_end(sample, n, i);
 		memset(held + i, last, end - i);
 		report->fitted += !last;
-		report->checked += last;
 	}
 	if (place >= LEAST) {
 		find_range(sample, held, n, s);
-		calibrate(sample, held, n, s, score);
+		calibrate(sample, held, n, SURROGATE_MEASURED, s, score);
+		calibrate(sample, held, n, SURROGATE_SAMPLED, s, score);
 		check(sample, held, n, s, report);
 	}
 	free(held);

@@ -40,12 +40,19 @@ struct surrogate_contact {
 	double property[SURROGATE_PROPERTIES];
 };
 
+/* Ascending: |ln(true / estimated volume)| / deviation. */
+struct surrogate_scores {
+	int count;
+	double score[SURROGATE_SCORES];
+};
+
+/* Errors by cells left out and by the sums alone have other distributions. */
+enum surrogate_class { SURROGATE_MEASURED, SURROGATE_SAMPLED, SURROGATE_CLASSES };
+
 struct surrogate {
 	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
-	/* Ascending: |ln(true / estimated volume)| / deviation, of the particles and
-	 * surfaces held back for it. */
-	int particles, totals;
-	double particle[SURROGATE_SCORES], total[SURROGATE_SCORES];
+	/* Of particles and surfaces of which all cells were measured, or some. */
+	struct surrogate_scores particle[SURROGATE_CLASSES], total[SURROGATE_CLASSES];
 };
 
 /* A particle of the full model. */

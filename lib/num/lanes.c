@@ -5,8 +5,6 @@ typedef uint64_t words4 __attribute__((vector_size(32)));
 /* Doubles that are looked at together, and those of the last steps. */
 enum { FEW = 4, MANY = 8 * FEW };
 
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
 static ALWAYS_INLINE void add_bits(words4 *any, const double *x)
 {
 	words4 w;

@@ -34,6 +34,9 @@ typedef int32_t eight_bits __attribute__((vector_size(32), aligned(16)));
 #define LANES_CLONES
 #endif
 
+/* Of functions that are compiled within those marked LANES_CLONES. */
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
 static inline lanes lanes_all(double x)
 {
 	return (lanes){ x, x };

@@ -14,8 +14,9 @@
  * the same time within 2 %. */
 enum { SQUARE = 8, CLOSE = 10, GAP = 4 };
 
-/* Nodes close to a load in a row, filled up to whole vectors. */
-enum { ACROSS = (2 * CLOSE + 1 + 7) / 8 * 8 };
+/* Nodes close to a load in a row, filled up to three vectors of eight. */
+enum { ACROSS = 24 };
+_Static_assert(2 * CLOSE + 1 <= ACROSS, "loads are close to more nodes");
 
 /* Of sums of up to a thousand loads in single precision. */
 static const double ROUNDING = 1e-4;
@@ -119,30 +120,39 @@ static void know_close(struct narrowing *w)
 			(2 * CLOSE + 1) * sizeof(float));
 }
 
+/* to += load from, for eight nodes. */
+static ALWAYS_INLINE void add_eight(float *to, float load, const float *from)
+{
+	eight a, b;
+
+	memcpy(&a, to, sizeof a);
+	memcpy(&b, from, sizeof b);
+	a += load * b;
+	memcpy(to, &a, sizeof a);
+}
+
 /* The sums for the rows [y0, y1). */
 LANES_CLONES static void add_close(struct narrowing *w, int y0, int y1)
 {
 	memset(w->close, 0, w->stride * SQUARE * sizeof *w->close);
-	for (int y = larger_int(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, w->n->wy); y++)
+	for (int y = larger_int(y0 - CLOSE, 0); y < lesser_int(y1 + CLOSE, w->n->wy);
+		y++) {
+		int top = larger_int(y - CLOSE, y0), end = lesser_int(y + CLOSE + 1, y1);
+
 		for (size_t k = w->row[y]; k < w->row[y + 1]; k++) {
+			const float *from = w->size[top - y + CLOSE];
+			float *to =
+				w->close + (size_t)(top - y0) * w->stride + w->load[k].x;
 			float load = (float)w->load[k].value;
 
-			for (int v = larger_int(y - CLOSE, y0); v <= y + CLOSE && v < y1;
-				v++) {
-				const float *from = w->size[v - y + CLOSE];
-				float *to = w->close + (size_t)(v - y0) * w->stride +
-					    w->load[k].x;
-
-				for (int i = 0; i < ACROSS; i += 8) {
-					eight a, b;
-
-					memcpy(&a, to + i, sizeof a);
-					memcpy(&b, from + i, sizeof b);
-					a += load * b;
-					memcpy(to + i, &a, sizeof a);
-				}
+			/* Loops are not unrolled at -O2. */
+			for (int v = top; v < end; v++, to += w->stride, from += ACROSS) {
+				add_eight(to, load, from);
+				add_eight(to + 8, load, from + 8);
+				add_eight(to + 16, load, from + 16);
 			}
 		}
+	}
 }
 
 static enum num_status add_run(struct narrowing *w, int y, int begin, int end)

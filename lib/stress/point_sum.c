@@ -93,9 +93,10 @@ struct effect {
 	eight number;
 };
 
+/* offset: from the first cell of the grid. */
 struct cell {
-	float load;
-	int x, y;
+	float load, x, y;
+	int offset;
 };
 
 /* A smallest square. */
@@ -279,7 +280,7 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 		count += (size_t)nx * (size_t)ny;
 	}
 	blocks = (size_t)s->nx * (size_t)s->ny;
-	s->squares = next = calloc(count, sizeof *s->squares);
+	s->squares = next = malloc(count * sizeof *s->squares);
 	s->begin = calloc(blocks + 1, sizeof *s->begin);
 	/* Few cells of a large grid are loaded: most of this is never touched. */
 	s->loaded = malloc((size_t)par->nx * (size_t)par->ny * sizeof *s->loaded);
@@ -366,6 +367,12 @@ static int next_block(const struct point_sum *s, int y, int x)
 	return first < nx ? (int)(first / BLOCK) : s->nx;
 }
 
+/* Offsets in a row. */
+static int offsets_across(const struct point_sum *s)
+{
+	return 2 * s->around_x + 1;
+}
+
 /* Lists the loaded cells of a smallest square and adds them up; returns how many cells
  * are listed now. */
 static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n)
@@ -373,6 +380,7 @@ static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n
 	int x0 = block_x * BLOCK, y0 = block_y * BLOCK;
 	int x1 = lesser_int(x0 + BLOCK, s->par.nx),
 	    y1 = lesser_int(y0 + BLOCK, s->par.ny);
+	int across = offsets_across(s);
 	double load = 0, sum_x = 0, sum_y = 0;
 
 	for (int y = y0; y < y1; y++)
@@ -381,7 +389,8 @@ static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n
 
 			if (!(p > 0))
 				continue;
-			s->loaded[n++] = (struct cell){ (float)(s->share * p), x, y };
+			s->loaded[n++] = (struct cell){ (float)(s->share * p), (float)x,
+				(float)y, y * across + x };
 			load += p;
 			sum_x += p * centre(x, s->dx);
 			sum_y += p * centre(y, s->dy);
@@ -396,7 +405,8 @@ static double total_of(const double *x, size_t n)
 {
 	lanes sum = lanes_all(0);
 
-	for (size_t i = 0; i < n; i += 2)
+	for (size_t i = lanes_next(x, 0, n) / 2 * 2; i < n;
+		i = lanes_next(x, i + 2, n) / 2 * 2)
 		lanes_add(&sum, lanes_load(x + i, i + 1 < n ? 2 : 1), i + 1 < n ? 2 : 1);
 	return sum[0] + sum[1];
 }
@@ -434,8 +444,6 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 					sum_four(q->load * q->y));
 		}
 }
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
 
 /* 1 / sqrt(x) to 5e-6: a line through the logarithm, which the bits of a float are
  * nearly, and two steps of Newton's method. */
@@ -541,7 +549,7 @@ static int eights_of(int loads)
 
 static int offset(const struct point_sum *s, int i, int j)
 {
-	return (s->around_y + j) * (2 * s->around_x + 1) + s->around_x + i;
+	return (s->around_y + j) * offsets_across(s) + s->around_x + i;
 }
 
 static struct effect *effects_of(struct point_sum *s, int depth)
@@ -593,16 +601,16 @@ static ALWAYS_INLINE void list_each(
 	const struct point_sum *s, struct point *at, const struct block *b)
 {
 	const float near = at->deep ? 0 : (float)NEAR;
-	const int across = 2 * s->around_x + 1, own = offset(s, at->ix, at->iy);
+	const float ix = (float)at->ix, iy = (float)at->iy;
+	const int own = offset(s, at->ix, at->iy);
 
 	for (size_t n = s->begin[b->at]; n < s->begin[b->at + 1]; n++) {
 		const struct cell *c = &s->loaded[n];
-		float x = (float)(at->ix - c->x) * s->dx,
-		      y = (float)(at->iy - c->y) * s->dy;
+		float x = (ix - c->x) * s->dx, y = (iy - c->y) * s->dy;
 
 		if (x * x + y * y < near * near)
 			at->element[at->elements++] =
-				(struct element){ own - (c->y * across + c->x), c->load };
+				(struct element){ own - c->offset, c->load };
 		else
 			list_near(s, at, c->load, x, y);
 	}

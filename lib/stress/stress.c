@@ -37,8 +37,9 @@ struct stress {
 	int loaded;          /* some cell is */
 	int side, bx, by;    /* cells to a block's side, blocks */
 	struct block *blocks;
-	double *row_load, load; /* of each row of blocks, and of all */
-	struct stress_box box;  /* of all */
+	double *row_load;      /* of each row of blocks */
+	double *beyond;        /* bound for the loads of rows more than so many away */
+	struct stress_box box; /* of all */
 	/* The loaded blocks row by row, those of row j from begin[j] to begin[j + 1]: the
 	 * ranges of their loaded cells, and their loads. */
 	double *low_x, *high_x, *low_y, *high_y, *weight;
@@ -122,6 +123,7 @@ struct stress *stress_new(const struct stress_par *par)
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
 	s->row_load = calloc((size_t)s->by, sizeof *s->row_load);
+	s->beyond = calloc((size_t)s->by, sizeof *s->beyond);
 	s->begin = calloc((size_t)s->by + 1, sizeof *s->begin);
 	s->low_x = calloc(5 * (size_t)s->bx * (size_t)s->by, sizeof *s->low_x);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
@@ -130,8 +132,8 @@ struct stress *stress_new(const struct stress_par *par)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	} else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->row_load || !s->begin || !s->low_x || !s->held ||
-		(par->periodic && !s->lent) || (!s->wave && !s->free)) {
+	if (!s->blocks || !s->row_load || !s->beyond || !s->begin || !s->low_x ||
+		!s->held || (par->periodic && !s->lent) || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -153,6 +155,7 @@ void stress_free(struct stress *s)
 	wave_sum_free(s->wave);
 	free(s->blocks);
 	free(s->row_load);
+	free(s->beyond);
 	free(s->begin);
 	free(s->low_x);
 	free(s->held);
@@ -198,7 +201,6 @@ static void list_blocks(struct stress *s)
 {
 	size_t n = 0;
 
-	s->load = 0;
 	s->box = (struct stress_box){ s->par.nx, -1, s->par.ny, -1 };
 	for (int j = 0; j < s->by; j++) {
 		s->row_load[j] = 0;
@@ -220,7 +222,6 @@ static void list_blocks(struct stress *s)
 			s->box.y0 = b->y0 < s->box.y0 ? b->y0 : s->box.y0;
 			s->box.y1 = b->y1 > s->box.y1 ? b->y1 : s->box.y1;
 		}
-		s->load += s->row_load[j];
 	}
 	s->begin[s->by] = n;
 }
@@ -318,32 +319,49 @@ static int block_is_touched(const struct stress *s, int bx, int by)
 	return 0;
 }
 
+static double load_of_row(const struct stress *s, int j)
+{
+	return j >= 0 && j < s->by ? s->row_load[j] : 0;
+}
+
+/* What the rows of blocks more than d away may add in row by, if the load of each were
+ * straight above or below. */
+static void bound_beyond(struct stress *s, int by, double z)
+{
+	double sum = 0;
+
+	for (int d = s->by - 1; d >= 0; d--) {
+		double load = load_of_row(s, by - d - 1) + load_of_row(s, by + d + 1);
+		double away = d * s->side * s->par.dy;
+
+		if (load > 0)
+			sum += load * s->point / (away * away + z * z);
+		s->beyond[d] = sum;
+	}
+}
+
 /* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
- * even if the remaining load were all in the next rows.  The block's own load, at no
- * distance, is often enough. */
+ * with what rows farther away may add.  The block's own load, at no distance, is often
+ * enough. */
 static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
 {
 	double own = s->blocks[(size_t)by * (size_t)s->bx + (size_t)bx].load;
-	double sum = 0, rest = s->load;
+	double sum = 0;
 
 	if (own > 0 && own * s->point > limit * (z * z))
 		return 1;
 	if (z == 0 && block_is_touched(s, bx, by))
 		return 1;
 	for (int d = 0; d < s->by; d++) {
-		double away = d * s->side * s->par.dy;
-
 		for (int side = 0; side < (d > 0 ? 2 : 1); side++) {
 			int j = side ? by - d : by + d;
 
-			if (j < 0 || j >= s->by || s->row_load[j] == 0)
-				continue;
-			sum += bound_row(s, bx, by, j, z);
-			rest -= s->row_load[j];
+			if (load_of_row(s, j) > 0)
+				sum += bound_row(s, bx, by, j, z);
 		}
 		if (sum > limit)
 			return 1;
-		if (sum + fmax(rest, 0) * s->point / (away * away + z * z) <= limit)
+		if (sum + s->beyond[d] <= limit)
 			return 0;
 	}
 	return 0;
@@ -365,6 +383,8 @@ static size_t reach(struct stress *s, double z, double limit, struct stress_span
 		int y0 = by * s->side,
 		    y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
 
+		if (s->free)
+			bound_beyond(s, by, z);
 		for (int bx = 0; bx < s->bx; bx++) {
 			int x0 = bx * s->side;
 			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;

@@ -14,14 +14,19 @@ static void put(struct table_out *t, const char *kind, const char *name, double 
 	table_end_row(t);
 }
 
-static void put_numbered(
-	struct table_out *t, const char *kind, const double *value, int count)
+static const char *const particle_names[SURROGATE_CLASSES] = { "particle",
+	"particle_sampled" },
+			 *const total_names[SURROGATE_CLASSES] = { "total",
+				 "total_sampled" };
+
+static void put_scores(
+	struct table_out *t, const char *kind, const struct surrogate_scores *s)
 {
 	char number[16];
 
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < s->count; i++) {
 		snprintf(number, sizeof number, "%d", i + 1);
-		put(t, kind, number, value[i]);
+		put(t, kind, number, s->score[i]);
 	}
 }
 
@@ -41,8 +46,10 @@ void surrogate_write(
 		put(t, "least", surrogate_property_names[k], s->least[k]);
 		put(t, "most", surrogate_property_names[k], s->most[k]);
 	}
-	put_numbered(t, "particle", s->particle, s->particles);
-	put_numbered(t, "total", s->total, s->totals);
+	for (int c = 0; c < SURROGATE_CLASSES; c++) {
+		put_scores(t, particle_names[c], &s->particle[c]);
+		put_scores(t, total_names[c], &s->total[c]);
+	}
 	table_done(t);
 }
 
@@ -54,21 +61,28 @@ static double *place_of(
 		if (!strcmp(name, surrogate_property_names[k]) &&
 			(!strcmp(kind, "least") || !strcmp(kind, "most")))
 			return &(kind[0] == 'l' ? s->least : s->most)[k];
-	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
-		return s->particle + s->particles++;
-	if (!strcmp(kind, "total") && s->totals < SURROGATE_SCORES)
-		return s->total + s->totals++;
+	for (int c = 0; c < SURROGATE_CLASSES; c++) {
+		struct surrogate_scores *scores =
+			!strcmp(kind, particle_names[c]) ? &s->particle[c]
+			: !strcmp(kind, total_names[c])  ? &s->total[c]
+							 : NULL;
+
+		if (scores && scores->count < SURROGATE_SCORES)
+			return scores->score + scores->count++;
+	}
 	die(EXIT_RUN,
 		"%s: line %ld: '%s %s' is nothing of a surrogate: fit it anew with debrisfit",
 		table_name(t), table_line(t), kind, name);
 }
 
-static void check_scores(const char *name, const char *kind, const double *score, int n)
+static int check_scores(
+	const char *name, const char *kind, const struct surrogate_scores *s)
 {
-	for (int i = 0; i < n; i++)
-		if (score[i] < (i > 0 ? score[i - 1] : 0))
+	for (int i = 0; i < s->count; i++)
+		if (s->score[i] < (i > 0 ? s->score[i - 1] : 0))
 			die(EXIT_RUN, "%s: scores of %s are not ascending from 0 on",
 				name, kind);
+	return s->count;
 }
 
 void surrogate_read(const char *path, struct surrogate *s)
@@ -76,7 +90,8 @@ void surrogate_read(const char *path, struct surrogate *s)
 	struct table_in *t = table_open(path);
 	int kind = table_need(t, "kind"), name = table_need(t, "name"),
 	    value = table_need(t, "value");
-	long rows = 0;
+	long rows = 0, scores = 0;
+	int whole = 0;
 
 	memset(s, 0, sizeof *s);
 	while (table_next(t)) {
@@ -91,11 +106,16 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(a);
 		rows++;
 	}
-	if (rows != 2L * SURROGATE_PROPERTIES + s->particles + s->totals ||
-		s->particles == 0 || s->totals == 0)
+	for (int c = 0; c < SURROGATE_CLASSES; c++) {
+		int ones = check_scores(
+			    table_name(t), particle_names[c], &s->particle[c]),
+		    all = check_scores(table_name(t), total_names[c], &s->total[c]);
+
+		scores += ones + all;
+		whole = whole || (ones > 0 && all > 0);
+	}
+	if (rows != 2L * SURROGATE_PROPERTIES + scores || !whole)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
-	check_scores(table_name(t), "particles", s->particle, s->particles);
-	check_scores(table_name(t), "totals", s->total, s->totals);
 	table_close(t);
 }

@@ -287,6 +287,22 @@ static void check_population(void)
 	near(load / fine.pressure, 1, 0.05, "drawn particles carry the mean pressure");
 	near(section / fine.section[1], 1, 0.05, "drawn particles wear at the mean rate");
 	free(list);
+	/* Beyond a diameter particles are rejected at the inlet, or buried: a class of
+	 * 1000 on both sides of it would be off by up to 3e-3. */
+	par.gap = 13e-6;
+	par.inlet = (27e-6 / par.gap - 1.01) * par.gap / 0.02;
+	population_mean(&p, &par, 1000, &coarse);
+	population_mean(&p, &par, 64000, &fine);
+	near(coarse.pressure / fine.pressure, 1, 2e-5,
+		"1000 classes are sufficient where an inlet rejects particles");
+	par.inlet = INFINITY;
+	par.gap = 5e-6;
+	par.hardness[1] = 2.4e9;
+	population_mean(&p, &par, 1000, &coarse);
+	population_mean(&p, &par, 64000, &fine);
+	near(coarse.section[1] / fine.section[1], 1, 2e-5,
+		"1000 classes are sufficient where particles are buried");
+	par.hardness[1] = 6e9;
 	/* Narrow gaps hold fewer particles: the pressure is largest in between. */
 	par.gap = 40e-6;
 	population_mean(&p, &par, 16000, &fine);

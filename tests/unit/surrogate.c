@@ -100,13 +100,16 @@ static void test_errors(double sums)
 /* Scores 1 to 9: the k-th largest bounds 1 - k / 10 of further errors. */
 static void test_levels(void)
 {
-	const struct footprint one = { .volume = 1, .sums = 1 };
+	const struct footprint one = { .volume = 1, .sums = 1 },
+			       sampled = { .volume = 1, .error = 1, .freedom = 1e9 };
 	const struct surrogate_contact contact = { { 0 } };
 	struct surrogate_guess guess, total;
-	struct surrogate s = { .particles = 9, .totals = 9 };
+	struct surrogate s = { .particle[SURROGATE_MEASURED] = { .count = 9 },
+		.total[SURROGATE_MEASURED] = { .count = 9 } };
 
 	for (int i = 0; i < 9; i++)
-		s.particle[i] = s.total[i] = i + 1;
+		s.particle[SURROGATE_MEASURED].score[i] =
+			s.total[SURROGATE_MEASURED].score[i] = i + 1;
 	ok(fabs(surrogate_highest_level(&s) - 0.9) < 1e-12,
 		"nine scores give intervals of 90 %% at most");
 	for (int k = 1; k <= 9; k++) {
@@ -121,6 +124,11 @@ static void test_levels(void)
 	}
 	ok(!surrogate_guess(&s, &one, 1, &contact, 0.91, &guess, &total),
 		"there is none of level 0.91");
+	s.particle[SURROGATE_MEASURED].score[8] = 1;
+	ok(surrogate_guess(&s, &sampled, 1, &contact, 0.9, &guess, &total) &&
+			fabs(log(guess.high) - 1.6449) < 1e-4 &&
+			fabs(log(total.high) - 9) < 1e-4,
+		"errors by cells left out, unknown to the fit, are no less than normal ones or others");
 }
 
 /* Half the width of the interval, of ln, of the total of regions like one. */
@@ -128,9 +136,9 @@ static double half_width(const struct footprint *one, size_t count)
 {
 	enum { MOST = 1000 };
 	const struct surrogate_contact contact = { { 0 } };
-	const struct surrogate s = {
-		.particles = 9, .totals = 9, .particle = { [8] = 1 }, .total = { [8] = 1 }
-	};
+	const struct surrogate_scores one_at_most = { 9, { [8] = 1 } };
+	const struct surrogate s = { .particle = { one_at_most, one_at_most },
+		.total = { one_at_most, one_at_most } };
 	struct footprint list[MOST];
 	struct surrogate_guess guess[MOST], total;
 
@@ -273,8 +281,9 @@ static void count_errors(const double *p, int left_out, int *all, int *within)
 				(size_t)(q->first[1] * SIDE + q->first[0]) != one->first)
 				continue;
 			++*all;
-			*within += fabs(q->volume - one->volume) <
-				   1.645 * hypot(one->error, one->sums);
+			*within +=
+				fabs(q->volume - one->volume) <
+				1.645 * hypot(hypot(one->error, one->jumps), one->sums);
 		}
 	footprints_free(f);
 	debris_free(d);
