@@ -167,12 +167,6 @@ static size_t kernel_column(const struct convolve *c)
 	return c->my / 2 + 1;
 }
 
-void convolve_size(const struct convolve *c, size_t *mx, size_t *my)
-{
-	*mx = c->mx;
-	*my = c->my;
-}
-
 double *convolve_alloc(const struct convolve *c)
 {
 	return fft_alloc(c->lx * kernel_column(c));

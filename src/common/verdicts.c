@@ -73,11 +73,6 @@ int verdict_doubted(const struct table_in *t)
 	return why != NULL;
 }
 
-int verdict_doubtful_too(void)
-{
-	return doubtful_too;
-}
-
 void verdict_report(void)
 {
 	stats_add("rows_doubtful", doubtful);

@@ -18,8 +18,6 @@ struct pipe sensors_pipe(void);
 struct stream sensors_stream(uint64_t seed, uint32_t realisation);
 /* Time from the first trace of a pulse to its centre. */
 double sensors_half_pulse(double velocity);
-/* Peak voltage over velocity and diameter cubed, V s/m4. */
-double sensors_calibration(void);
 /* Duration of a pulse at mean velocity, s. */
 double sensors_pulse(void);
 double sensors_drift_time(void); /* s */
