@@ -164,9 +164,9 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v 'oblique' surrogate.tsv | grep -v '^#' >part.tsv
-fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'a part of a surrogate' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 grep -v '^total\|^#' surrogate.tsv >part.tsv
-fails 'a surrogate without totals' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'a surrogate without totals' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 { grep -v '^#' surrogate.tsv; printf 'deviation\tsums\t0.001\n'; } >part.tsv
 fails 'a surrogate of an earlier program' 1 'fit it anew with debrisfit' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 fails 'a level beyond the scores of the fit' 1 'give intervals of level 0.9[0-9]* at most' \

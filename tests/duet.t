@@ -155,7 +155,7 @@ near "the share of isolated particles found is the predicted one" "$(cut -d' ' -
 near "the share found beside a large particle is the predicted one" "$(cut -d' ' -f2 share)" "$(cut -f2 told)" 0.22
 at_most "a large pulse hides small ones" "$(cut -f2 told)" 0.7
 is "the largest pulse is reported" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p' limits.tsv)" 1.7
-fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
+fails "no limits of detection without a fit" 2 'detectable requires --method fit' \
 	duet --method count --detectable x weak.au
 
 # A live record: rows come before a second of it has, though its end is far away.
@@ -357,7 +357,7 @@ fails "a filter that leaves too little of the pulses" 1 "too narrow a band" duet
 fails "a lag as long as the record" 1 "align is as long as what is learned from" duet --align 10s s.au
 fails "an unknown method" 2 'method' duet --method best s.au
 fails "odd window" 2 'even' duet --method duet --window 63 s.au
-fails "window without duet" 2 'need --method duet' duet --window 64 s.au
+fails "window without duet" 2 'require --method duet' duet --window 64 s.au
 
 # The instrument is kept: a second run learns nothing, and its rows come at once.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms \
@@ -400,7 +400,7 @@ fails "an instrument that cannot be written, before the record is found torn" 1 
 sensorsim --uniform 80um:120um --number 9 --duration 2s --rate 5kHz --noise 30mV >slow.au
 fails "an instrument of another rate is refused" 1 'learned at 10000 Hz, the record has 5000 Hz' \
 	duet --instrument rig.tsv slow.au
-fails "an instrument is for the fit" 2 'needs --method fit' duet --method count --instrument rig.tsv rig.au
+fails "an instrument is for the fit" 2 'requires --method fit' duet --method count --instrument rig.tsv rig.au
 
 # What has changed since is noticed: gain, form, polarity, lines, noise of either channel; the flow is
 # followed.

@@ -100,7 +100,7 @@ refuse() {
 	printf '# cmd: %s\nx\n1\n' "$2" >hostile
 	fails "$1" 1 "$3" records --replay hostile
 }
-refuse 'a header with another program' 'rm -rf /nowhere' "'rm' is no program of wearpipe"
+refuse 'a header with another program' 'rm -rf /nowhere' "'rm' is not a program of wearpipe"
 refuse 'a header with a program by its path' '/bin/sh -c true' "'/bin/sh' is no program"
 refuse 'a header with another program behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
 refuse 'a header with another program beside ours' 'roughgen --points 4; touch stolen' 'touch'

@@ -59,7 +59,7 @@ static double *place_of(
 	if (!strcmp(kind, "total") && s->totals < SURROGATE_SCORES)
 		return s->total + s->totals++;
 	die(EXIT_RUN,
-		"%s: line %ld: '%s %s' is nothing of a surrogate: fit it anew with debrisfit",
+		"%s: line %ld: '%s %s' is not part of a surrogate: fit it anew with debrisfit",
 		table_name(t), table_line(t), kind, name);
 }
 
@@ -93,7 +93,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 	}
 	if (rows != 2L * SURROGATE_PROPERTIES + s->particles + s->totals ||
 		s->particles == 0 || s->totals == 0)
-		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
+		die(EXIT_RUN, "%s: %ld rows: not a complete surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);
 	check_scores(table_name(t), "totals", s->total, s->totals);

@@ -83,7 +83,7 @@ void verdict_report(void)
 		     "takes them in",
 			doubtful);
 	if (foreign > 0)
-		note("%.0f rows are shocks, bubbles, impulses or transients, and no particles",
+		note("%.0f rows are shocks, bubbles, impulses or transients, not particles",
 			foreign);
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",

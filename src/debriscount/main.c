@@ -259,7 +259,7 @@ static double count_rows(
 	}
 	if (across > 0) {
 		warn("%.0f sections that are not resolved reach beyond their period and are "
-		     "counted in that of their middle: a longer --period tells better",
+		     "counted in that of their middle: choose a longer --period",
 			across);
 		groups_doubtful(groups);
 	}
@@ -299,7 +299,7 @@ int main(int argc, char **argv)
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "
-		     "--duration tells better",
+		     "specify --duration",
 			last);
 	if ((duration - last) / period > PERIODS_MOST)
 		die(EXIT_USAGE,

@@ -322,8 +322,6 @@ static const struct raw_layout *layout(void)
 	static struct raw_layout raw;
 	const struct raw_layout *given = raw_given();
 
-	if (raw_fields && !given)
-		die(EXIT_USAGE, "--fields needs --raw");
 	if (!given)
 		return NULL;
 	raw = *given;
@@ -356,6 +354,7 @@ int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
 
+	opt_require("raw", "fields");
 	if (!join && argc - first > 1)
 		die(EXIT_USAGE, "%s: one file at most, unless --join", argv[first + 1]);
 	if (join)

@@ -85,7 +85,7 @@ static void check_program(const struct parser *p, const char *name)
 
 	if (strchr(name, ' ') || !*name || !strstr(programs, padded))
 		die(EXIT_RUN,
-			"%s: its cmd is not replayed: '%s' is no program of wearpipe",
+			"%s: its cmd is not replayed: '%s' is not a program of wearpipe",
 			p->name, name);
 	free(padded);
 }

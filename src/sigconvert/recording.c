@@ -151,7 +151,7 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
 
 	if (format->rate != info.samplerate)
-		die(EXIT_RUN, "%.17g Hz: WAV and FLAC want a whole number of hertz",
+		die(EXIT_RUN, "%.17g Hz: WAV and FLAC require a whole number of hertz",
 			format->rate);
 	info.format = o->to == TO_WAV ? SF_FORMAT_WAV | SF_FORMAT_DOUBLE
 				      : SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
