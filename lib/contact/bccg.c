@@ -400,11 +400,12 @@ static void renew_gap(struct contact *c, struct state *state)
 }
 
 /* The preconditioner for the mean residual, which counts only where the approach is
- * given. An error d of the approach asks for a load that depends on how the contacts lie,
- * and not on the length of the grid.  Of all multiples of the pressure, d F / sum p u of
- * it lowers the energy most; its load F, spread over the active cells, is what the mean
- * gets. Forty contacts of 256 x 256 cells and of strips take 1.2 times as many iterations
- * as with the load, and 1.1 to 3.7 times with 8 times the stiffness of the longest wave.
+ * given.  The load that corrects an error d of the approach depends on the arrangement of
+ * the contacts, not on the length of the grid.  Of all multiples of the pressure, d F /
+ * sum p u times it lowers the energy most; its load F, spread over the active cells, is
+ * the step of the mean.  Forty contacts of 256 x 256 cells and of strips take 1.2 times
+ * as many iterations as with the load, and 1.1 to 3.7 times with 8 times the stiffness of
+ * the longest wave.
  */
 static void match_mean(struct contact *c, const struct sweep *s)
 {

@@ -15,8 +15,7 @@ struct contact_kernel {
 	/* Displacement at (x, y) from the centre of a cell dx * dy under unit pressure,
 	 * m/Pa; NULL if it is not known: then only periodic boundaries are possible. */
 	double (*patch)(const void *context, double dx, double dy, double x, double y);
-	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa; decreases with q.
-	 */
+	/* Factor in u^ = factor p^, m/Pa, at wavenumber q > 0, rad/m; falls with q. */
 	double (*wave)(const void *context, double q);
 };
 

@@ -61,8 +61,8 @@ static FILE *put_aside(struct input *in)
 	return copy;
 }
 
-/* Of a WAV file that was cut off libsndfile reads what is there, and notes in its log
- * "data : 20000 (should be 11956)".  Recorders that stream announce 2 GiB or more. */
+/* libsndfile reads a truncated WAV file without an error, but notes in its log
+ * "data : 20000 (should be 11956)".  Streaming recorders announce 2 GiB or more. */
 static void check_whole(const struct recording *r)
 {
 	char log[1 << 14] = "";
