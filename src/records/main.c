@@ -10,7 +10,7 @@
 #include "io/gsf.h"
 #include "io/tables.h"
 #include "join.h"
-#include "people.h"
+#include "pretty.h"
 #include "replay.h"
 #include "source.h"
 #include <math.h>
@@ -364,7 +364,7 @@ int main(int argc, char **argv)
 	else if (check)
 		status = check_stream(argv[first]);
 	else if (pretty)
-		people_show(argv[first]);
+		pretty_show(argv[first]);
 	else
 		convert(argv[first]);
 	return shell_done(status);
