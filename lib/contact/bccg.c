@@ -17,9 +17,7 @@
  * The inverse of the half-space restricted to the contact is not the restricted
  * inverse: that needs a residual continued beyond the contact so that its image there
  * vanishes, see extension.h. */
-#include "contact/bccg.h"
-#include "contact/blocks.h"
-#include "contact/gradient.h"
+#include "contact/state.h"
 #include "num/fft.h"
 #include "num/lanes.h"
 #include "num/status.h"
@@ -323,7 +321,7 @@ static double balance_blocks(
 
 	if (s->sum[3] >= (1 - few) * t->active)
 		return share_step(c, missing, s);
-	blocks_keep_load(c);
+	contact_keep_load(c);
 	*s = contact_sweep(c, shift_step);
 	rest = share_step(c, missing, s);
 	if (s->sum[0] < 0)

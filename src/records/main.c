@@ -1,5 +1,5 @@
 /* records - list, pick, count and convert the records of a field stream */
-#include "check.h"
+#include "actions.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -9,9 +9,6 @@
 #include "io/fields.h"
 #include "io/gsf.h"
 #include "io/tables.h"
-#include "join.h"
-#include "pretty.h"
-#include "replay.h"
 #include "source.h"
 #include <math.h>
 #include <stdlib.h>
@@ -364,7 +361,7 @@ int main(int argc, char **argv)
 	else if (check)
 		status = check_stream(argv[first]);
 	else if (pretty)
-		pretty_show(argv[first]);
+		show_pretty(argv[first]);
 	else
 		convert(argv[first]);
 	return shell_done(status);

@@ -1,4 +1,4 @@
-#include "replay.h"
+#include "actions.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/text.h"
