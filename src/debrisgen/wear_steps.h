@@ -1,7 +1,7 @@
 /* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost
  */
-#ifndef WEARING_H
-#define WEARING_H
+#ifndef WEAR_STEPS_H
+#define WEAR_STEPS_H
 
 #include "outputs.h"
 

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { POINTS_MAX = 65536 };
-
 static const char *const acf_words[] = { "gauss", "exp", NULL };
 
 static struct opt_list points = { 1, { 256 } };

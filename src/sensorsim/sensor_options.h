@@ -1,7 +1,7 @@
 /* sensor_options.h - the pipe, its two sensors and what disturbs them: options of
  * sensorsim */
-#ifndef SENSORS_H
-#define SENSORS_H
+#ifndef SENSOR_OPTIONS_H
+#define SENSOR_OPTIONS_H
 
 #include "cli/opt.h"
 #include "signal/simulate/passage.h"
