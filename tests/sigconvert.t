@@ -209,7 +209,7 @@ is "aopf keeps the units" "$(sed -n 's/^# units: //p' life.tsv)" 'h l/min l/min 
 sigconvert --output table --columns 'leakage=flow, main' pump.csv | rwl --wear-rate filter - >rest.tsv 2>err
 printf 't leakage\n0 1.5\n20.5 1.52\n40 1.54\n60 1.58\n80 1.6\n' |
 	rwl --wear-rate filter --time-unit h --state-unit L/min - >want.tsv 2>err
-is "rwl converts them" "$(body rest.tsv)" "$(body want.tsv)"
+is "rwl converts the units of a table" "$(body rest.tsv)" "$(body want.tsv)"
 fails "a column of words" 1 "line 2: Remark: 'new' is not a number" sigconvert --output table pump.csv
 fails "a missing column is named with those of the table" 1 "no column 'Leak' among 'Time' 'Flow, main' 'Temp' 'Remark'" \
 	sigconvert --output table --columns Leak pump.csv

@@ -28,7 +28,7 @@ sensorsim --duration 2s --uniform 100um:150um --number 20 --material steel=3,cop
 watch --state copper copper.au 2>said
 is 'pulses of the other sign are doubted as non-ferrous' "$? $(grep -c 'pulses have the other sign: non-ferrous' said)" '3 1'
 # duet doubts one of seven, which overlaps a larger pulse
-near 'as many as there are' "$(column doubts copper/chunks.tsv | tr ',' '\n' | awk -F : '/^signs/ { n += $2 } END { print n }')" \
+near 'all pulses of the other sign are counted' "$(column doubts copper/chunks.tsv | tr ',' '\n' | awk -F : '/^signs/ { n += $2 } END { print n }')" \
 	"$(column amplitude copper.tsv | awk '$1 < 0' | wc -l | tr -d ' ')" 1
 
 # Live, as a pipe: killed with all its children in the third hour, when a tenth of a second
