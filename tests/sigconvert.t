@@ -2,7 +2,7 @@
 # sigconvert: recordings of other programs in and out, exact where the format is
 . "$(dirname "$0")/tap.sh"
 
-# samples FILE: all samples of a signal, parted by blanks
+# samples FILE: all samples of a signal, separated by blanks
 samples() {
 	sigconvert --output text "$1" | grep -v '^[#t]' | cut -f 2- | tr '\t\n' '  ' | sed 's/ $//'
 }

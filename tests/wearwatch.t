@@ -96,6 +96,6 @@ fails 'an empty stream' 1 'empty' watch --state other
 fails 'no state' 2 'want --state' wearwatch hours.au
 fails 'a time without a number' 2 'want a time above 0' wearwatch --state other --chunk x hours.au
 fails 'an overlap as long as a chunk' 2 'less than a chunk' wearwatch --state other --chunk 1s --overlap 1s hours.au
-fails 'alarms of a life without an end' 2 'wants --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
+fails 'alarms of a life without an end' 2 'requires --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
 fails 'an unknown option' 2 'no such option' wearwatch --colour
 done_testing
