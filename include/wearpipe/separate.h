@@ -1,5 +1,4 @@
-/* separate.h - wear particles in the record of two inductive sensors, as duet(1) finds
- *them
+/* separate.h - wear particles in the record of two inductive sensors, found as by duet(1)
  *
  *	struct wp_separate_par par = { .rate = 10e3 };
  *	struct wp_separate *s = wp_separate_new(&par, NULL);
