@@ -201,7 +201,7 @@ check-long: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS) $(TESTS)
 
-# A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
+# A Slurm cluster of one node, started for the test; requires slurm-wlm and munge.
 check-cluster: all
 	@BIN="$(abspath $(BIN))" tests/run tests/cluster/*.t
 

@@ -93,9 +93,9 @@ near "the interval of three tables is that of their means" \
 	"$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print log(b / a) / 2 }')" 0.025855 1e-5
 ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm >cal.tsv 2>err
 # 12.7062, Student's t of one degree, times 0.0141421 over the root of 2
-near "two tables tell what they share about the constant" \
+near "the interval of the constant of two tables is that of their means" \
 	"$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print log(b / a) / 2 }')" 0.127062 1e-5
-is "but not about the exponent, which the message says" "$(grep -c 'unless a diameter or a record has an error' err)" 1
+is "two tables do not include a shared error in the exponent, and a message says so" "$(grep -c 'unless a diameter or a record has an error' err)" 1
 ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm --balls size3.tsv:3mm >cal.tsv 2>err
 rising "errors that tables share leave the exponent in doubt" 0.05 "$(value exponent_p)" 1
 ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:0.7mm >cal.tsv 2>err

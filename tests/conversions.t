@@ -75,7 +75,7 @@ fi
 
 head -c 1000 raw >cut
 fails 'raw samples that are cut off' 1 'want [0-9]* bytes, got' records --raw 16x12 --pixel 1um cut
-fails 'names without --raw' 2 'needs --raw' records --fields 'height m' surfaces
+fails 'names without --raw' 2 'requires --raw' records --fields 'height m' surfaces
 fails 'three spacings of a plane' 2 'no layers' records --raw 4x4 --pixel 1umx1umx1um raw
 fails 'two fields of one name' 1 'names of 2 fields' records --raw 16x12 --pixel 1um --fields 'a m,a m' raw
 fails 'a size that no memory holds' 1 'raw' records --raw 1000000000x1000000000x1000000000 --pixel 1umx1umx1um raw
@@ -88,5 +88,5 @@ grep -v '^[#]' surfaces.tsv | sed 5d >rows
 	sed -n '/^#/p; /^realisation/q' surfaces.tsv | grep -v '^# \(stream\|end\)'
 	cat rows
 } | sed '1i # stream: other' >hole
-fails 'a table with a point missing' 1 'is no regular grid' records --output nrrd hole
+fails 'a table with a point missing' 1 'is not a regular grid' records --output nrrd hole
 done_testing

@@ -65,7 +65,7 @@ for row in 'nan nan' '60e-6 10e-6'; do
 done >most
 is "the energy of a section bounds the number of particles of unknown size" "$(cat most)" "21 2 0 11 0 0 "
 # 11 with the energy of one of 150 um are no heavier than 11 equal ones; and 3.69 of 125 um
-near "and their mass" "$(cell kg_per_hour_high most.out 1)" \
+near "the energy of a section bounds the mass of its particles" "$(cell kg_per_hour_high most.out 1)" \
 	"$(awk 'BEGIN { print atan2(0, -1) / 6 * (sqrt(11) * 150e-6 ^ 3 - log(0.025) * 125e-6 ^ 3) * 7800 * 360 }')" 1e-9
 
 printf 'time1\tdiameter\tmaterial\n1\t60e-6\tsteel\n2\t60e-6\tbronze\n3\t80e-6\tsteel\n' >two.tsv
@@ -91,7 +91,7 @@ debriscount --by class --non-ferrous bronze --excitation 200kHz --density 8800kg
 	--classes 10um,100um,160um kinds.tsv >kinds.out 2>err
 is "non-ferrous particles are in the class of their own size, without a warning" \
 	"$? $(column rows kinds.out | tr '\n' ' ')$(wc -l <err | tr -d ' ')" "0 1 0 0 0 1 0 0"
-near "and have their own mass" "$(column kg_per_hour kinds.out | awk -v m="$(cat bronze)" 'NR == 5 { print $1 / m }')" 1 1e-3
+near "non-ferrous particles have the mass of their own size" "$(column kg_per_hour kinds.out | awk -v m="$(cat bronze)" 'NR == 5 { print $1 / m }')" 1 1e-3
 # Garwood's limit for two particles, 7.2247, of the upper end of the class for the third
 debriscount --by class --non-ferrous bronze --excitation 200kHz --duration 1h --classes 10um,100um,160um >unclear.out \
 	2>err <<-END
@@ -102,9 +102,9 @@ is "an unclear particle may be either, with the size that it then has" \
 	"$(column doubtful unclear.out | tr '\n' ' ')$(column number_high unclear.out | awk '{ printf "%.4f ", $1 }')" \
 	"1 0 0 0 1 0 0 0 0 7.2247 3.6889 3.6889 3.6889 7.2247 3.6889 5.5716 3.6889 3.6889 "
 debriscount --by class --density 8800kg/m3 --duration 1h kinds.tsv >kinds.out 2>err
-is "without their material the mass is marked" "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
+is "the mass of non-ferrous particles of unknown material is marked" "$? $(grep -c '1 rows are non-ferrous' err)" "3 1"
 debriscount --by class --duration 1h kinds.tsv >kinds.out 2>err
-is "their number is not" "$? $(wc -l <err | tr -d ' ')" "0 0"
+is "the number of non-ferrous particles of unknown material is not marked" "$? $(wc -l <err | tr -d ' ')" "0 0"
 # 20 um is half detected, and so is what it is equivalent to.
 debriscount --by class --non-ferrous bronze --excitation 200kHz --duration 1h --d50 20um --detection-threshold 5 \
 	kinds.tsv >kinds.out
@@ -143,8 +143,8 @@ is "two periods have no interval of the slope" "$(cell slope trend.tsv 2)" nan
 # the hours 42 h2; 1.95996 deviations
 printf 'time1\tdiameter\n' >none.tsv
 debriscount --output trend --period 1h --duration 8h none.tsv >trend.tsv
-near "hours without particles leave the slope in doubt" "$(column slope_high trend.tsv | tail -n 1)" 0.106925 1e-5
-is "as many particles in each hour, too" "$(awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 8; h++)
+near "hours without particles have an upper limit of the slope" "$(column slope_high trend.tsv | tail -n 1)" 0.106925 1e-5
+is "hours of equal numbers have an upper limit of the slope" "$(awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 8; h++)
 	print h * 3600 + 10 "\t50e-6" }' | debriscount --output trend --period 1h --duration 8h |
 	column slope_high /dev/stdin | tail -n 1 | awk '{ printf "%.5f", $1 }')" 0.32077
 awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 9; h++) { n = h < 5 ? 20 : 5 + h
@@ -169,10 +169,10 @@ debriscount --period 1h --duration 25201s --alarm 10:5 level.tsv >alarm.tsv
 is "an incomplete period does not clear an alarm" "$? $(column alarm alarm.tsv | tail -n 1)" "4 1"
 (awk -F '\t' 'NR == 1 || $1 < 21600' level.tsv; printf '21600.5\t50e-6\n') >last.tsv
 debriscount --period 1h --duration 21601s --alarm 10:5 last.tsv >alarm.tsv
-is "nor does a single particle in it raise one" "$? $(column alarm alarm.tsv | tail -n 1)" "0 0"
+is "a single particle in an incomplete period does not raise an alarm" "$? $(column alarm alarm.tsv | tail -n 1)" "0 0"
 (cat last.tsv; awk 'BEGIN { for (i = 0; i < 9; i++) print "21600.6\t50e-6" }') |
 	debriscount --period 1h --duration 21601s --alarm 10:5 >alarm.tsv
-is "but as many as a complete period would need do" "$? $(column alarm alarm.tsv | tail -n 1)" "4 1"
+is "as many particles as a complete period needs raise an alarm in an incomplete one" "$? $(column alarm alarm.tsv | tail -n 1)" "4 1"
 debriscount --period 1h --duration 7h --density 7.8g/cm3 --alarm 5e-9 --alarm-mass level.tsv >alarm.tsv
 is "levels of mass raise an alarm" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 0 0 0 1 "
 
@@ -259,7 +259,7 @@ for se in 0.57 0.58; do
 done >across
 is "a section that is longer than its period lasts is marked" "$(tr '\n' ';' <across)" "0 0;3 1;"
 debriscount --duration 20s long.tsv >out 2>err
-is "without periods it is not" "$?" 0
+is "an unresolved section is not marked without --period" "$?" 0
 # 32 particles in half a period are 11520 per hour of the whole one
 awk 'BEGIN { print "time1\tdiameter"; for (i = 0; i < 32; i++) printf "%g\t1e-4\n", 40 + i * 0.15 }' >rise.tsv
 for output in classes trend; do
@@ -273,7 +273,7 @@ awk 'BEGIN { print "time1\tdiameter\tverdict\tsources"; for (i = 1; i < 7; i++) 
 debriscount --period 10s --duration 40s --alarm 1800:1000 veiled.tsv >out 2>err
 is "a period whose count has no upper limit does not clear an alarm" "$? $(column alarm out | tr '\n' ' ')" "0 1 1 0 0 "
 debriscount -o trend --window 3 --period 10s --duration 50s --alarm 1800:1000 veiled.tsv >out 2>err
-is "and gives no limits to a slope" "$(column slope_high out | awk '{ printf "%s ", $1 ~ /inf|nan/ ? $1 : "finite" }')" \
+is "a period whose count has no upper limit gives no limit to a slope" "$(column slope_high out | awk '{ printf "%s ", $1 ~ /inf|nan/ ? $1 : "finite" }')" \
 	"nan nan inf inf finite "
 sed '/^25/,$d' veiled.tsv | debriscount --period 10s --duration 20s --alarm 1800:1000 >out 2>err
 is "an alarm is active at the end of a record whose last count is not known" $? 4

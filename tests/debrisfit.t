@@ -82,7 +82,7 @@ contacts 10 4 | records --pick 4 --output nrrd >last.nrrd
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 last.nrrd 2>said |
 	grep -v '^#' | awk -F '\t' '$1 == 3' >alone
 same 'a surface has the same particles alone as after others' together alone
-is 'it has some' "$(awk 'END { print (NR > 0) }' alone)" 1
+is 'a surface among others has particles' "$(awk 'END { print (NR > 0) }' alone)" 1
 
 # None and one particle: a smooth ball below and above yield.
 ball() { # LOAD: particles and volume, full and surrogate
@@ -92,10 +92,10 @@ ball() { # LOAD: particles and volume, full and surrogate
 	echo "$(column particles ball.full) $(column particles ball.quick) $(column volume ball.full) $(column volume ball.quick)"
 }
 is 'a ball that does not yield loses nothing' "$(ball 1uN)" '0 0 0 0'
-is 'this is certain' "$(column volume_low ball.quick) $(column volume_high ball.quick) $(column exact ball.quick)" '0 0 1'
+is 'the interval of a ball that does not yield has no width' "$(column volume_low ball.quick) $(column volume_high ball.quick) $(column exact ball.quick)" '0 0 1'
 ball 4N >one
 is 'a ball that yields loses one particle' "$(cut -d ' ' -f 1,2 one)" '1 1'
-near 'its volume is that of the full model but for what balls differ from rough surfaces' \
+near 'the volume lost by a ball is that of the full model within a quarter' \
 	"$(awk '{ print $4 / $3 }' one)" 1 0.25
 
 # Cells three times as long as wide: the depths below them are those of the full model.
@@ -144,7 +144,7 @@ debrisgen --yield 230MPa --friction 0.1 --shear y --summary bronze.full bronze.n
 debrisgen --yield 230MPa --friction 0.1 --shear y --surrogate surrogate.tsv --width 10 --audit 0 --summary bronze.quick --stats stats \
 	bronze.nrrd >/dev/null 2>&1
 is 'bronze is estimated after a fit to steel' "$(($(column surfaces_estimated stats) >= 6))" 1
-near 'its volume is that of the full model' "$(column volume bronze.quick | awk '{ v += $1 } END { print v * 1e13 }')" \
+near 'the volume lost by bronze is that of the full model' "$(column volume bronze.quick | awk '{ v += $1 } END { print v * 1e13 }')" \
 	"$(column volume bronze.full | awk '{ v += $1 } END { print v * 1e13 }')" 0.07
 
 # Outside the range of the fit the full model runs and says so.
@@ -183,9 +183,9 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v 'oblique' surrogate.tsv | grep -v '^#' >part.tsv
-fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'a part of a surrogate' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 grep -v '^total\|^#' surrogate.tsv >part.tsv
-fails 'a surrogate without totals' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'a surrogate without totals' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 { grep -v '^#' surrogate.tsv; printf 'deviation\tsums\t0.001\n'; } >part.tsv
 fails 'a surrogate of an earlier program' 1 'fit it anew with debrisfit' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 fails 'a level beyond the scores of the fit' 1 'give intervals of level 0.9[0-9]* at most' \

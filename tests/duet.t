@@ -93,16 +93,16 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 50ms --snr 40dB \
 	--lag 0.2ms:0.5ms --truth truth.tsv >s.au
 duet --method duet --separated sources.au --histogram hist.tsv s.au >masks.tsv
 is "masks: all particles are found" "$(score matched truth.tsv masks.tsv)" 60
-at_most "masks: the delays of lone pulses are right to 0.4 samples" "$(score delay_rms truth.tsv masks.tsv)" 40e-6
+at_most "masks: the delays of isolated pulses are right to 0.4 samples" "$(score delay_rms truth.tsv masks.tsv)" 40e-6
 ok "masks: the histogram is written" sh -c "grep -q ^section hist.tsv"
 ok "masks: the separated signals are written" sh -c "test \$(wc -c <sources.au) -gt 1000000"
 ok "counting at sensor 1 succeeds" sh -c "duet --method count s.au >c.tsv"
-is "counting finds the 60 lone pulses" "$(column particle c.tsv | wc -l)" 60
+is "counting finds the 60 isolated pulses" "$(column particle c.tsv | wc -l)" 60
 
 # Standard errors: 68 % inside one, give or take 3.5 deviations of 200 draws.
 sensorsim --uniform 80um:120um --number 200 --duration 30s --gap 50ms --snr 30dB \
-	--lag 0.2ms:0.5ms --truth t.tsv >lone.au
-duet lone.au >f.tsv
+	--lag 0.2ms:0.5ms --truth t.tsv >single.au
+duet single.au >f.tsv
 for c in time1 time2 delay velocity diameter amplitude; do
 	for f in t f; do
 		column "$c" $f.tsv >$f.col
@@ -114,7 +114,7 @@ done >off.txt
 is "68 % of the delays are within their standard error" "$(cat off.txt)" ""
 
 # Counted on either sensor: that one has an arrival.
-duet --method count --sensor 2 --align 20ms lone.au >c.tsv
+duet --method count --sensor 2 --align 20ms single.au >c.tsv
 is "counting at sensor 2 gives no arrival at sensor 1" "$(column time1 c.tsv | sort -u)" nan
 column time2 t.tsv >t.col
 at_most "peaks at sensor 2 are a quarter of a pulse (2.5 ms) from the arrivals" \
@@ -155,7 +155,7 @@ near "the share of isolated particles found is the predicted one" "$(cut -d' ' -
 near "the share found beside a large particle is the predicted one" "$(cut -d' ' -f2 share)" "$(cut -f2 told)" 0.22
 at_most "a large pulse hides small ones" "$(cut -f2 told)" 0.7
 is "the largest pulse is reported" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p' limits.tsv)" 1.7
-fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
+fails "no limits of detection without a fit" 2 'detectable requires --method fit' \
 	duet --method count --detectable x weak.au
 
 # A live record: rows come before a second of it has, though its end is far away.
@@ -202,7 +202,7 @@ near "false alarms are as frequent as said" "$(column time1 alarms.tsv | wc -l)"
 
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
-at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2
+at_most "masks: isolated pulses are not demixed" "$(column_of demixings <stats.tsv)" 2
 
 # Too dense: said so, and the sum of squares is right (1000 per second, A = 1: 1000 V2/s).
 sensorsim --uniform 100um:100um --number 2000 --duration 2s --snr 30dB --truth t.tsv >dense.au
@@ -357,7 +357,7 @@ fails "a filter that leaves too little of the pulses" 1 "too narrow a band" duet
 fails "a lag as long as the record" 1 "align is as long as what is learned from" duet --align 10s s.au
 fails "an unknown method" 2 'method' duet --method best s.au
 fails "odd window" 2 'even' duet --method duet --window 63 s.au
-fails "window without duet" 2 'need --method duet' duet --window 64 s.au
+fails "window without duet" 2 'require --method duet' duet --window 64 s.au
 
 # The instrument is kept: a second run learns nothing, and its rows come at once.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms \
@@ -400,7 +400,7 @@ fails "an instrument that cannot be written, before the record is found torn" 1 
 sensorsim --uniform 80um:120um --number 9 --duration 2s --rate 5kHz --noise 30mV >slow.au
 fails "an instrument of another rate is refused" 1 'learned at 10000 Hz, the record has 5000 Hz' \
 	duet --instrument rig.tsv slow.au
-fails "an instrument is for the fit" 2 'needs --method fit' duet --method count --instrument rig.tsv rig.au
+fails "an instrument is for the fit" 2 'requires --method fit' duet --method count --instrument rig.tsv rig.au
 
 # What has changed since is noticed: gain, form, polarity, lines, noise of either channel; the flow is
 # followed.

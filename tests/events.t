@@ -31,7 +31,7 @@ for kind in bubble shock impulse; do
 	impulse) is "impulses: the record is believed" "$status: $(cat err)" "0: " ;;
 	*)
 		is "${kind}s: hide particles, so that the record is doubtful" "$status" 3
-		like "${kind}s: it is said" "$(cat err)" \
+		like "${kind}s: a message states the share of the record" "$(cat err)" \
 			'^duet: s.au: events that are no particles cover [0-9.]* % of it, and hide'
 		;;
 	esac
@@ -80,7 +80,7 @@ for s in shocks behind; do sigconvert -o raw $s.au; done |
 	sigconvert --from raw --channels 2 --rate 10kHz >s.au
 duet s.au >found.tsv 2>err
 is "nothing learned at first: the record is doubtful" $? 3
-like "nothing learned at first: it is said" "$(cat err)" \
+like "nothing learned at first: a message states the time" "$(cat err)" \
 	'^duet: s.au: nothing could be learned from its first [0-9.]* s, in which a channel'
 is "nothing learned at first: particles behind it are found" \
 	$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap))) 60
@@ -94,7 +94,7 @@ sensorsim --uniform 80um:120um --number 50 --duration 7s --gap 30ms --snr 30dB -
 	$i += (5 - i) * exp(-$1 / 0.3) } { print }' | sigconvert --from text >settles.au
 duet settles.au >found.tsv 2>err
 is "a record that settles is doubtful" $? 3
-like "a record that settles: it is said" "$(cat err)" '^duet: settles.au: nothing could be learned from its first'
+like "a record that settles: a message states the time" "$(cat err)" '^duet: settles.au: nothing could be learned from its first'
 at_least "a record that settles: particles behind it are found" "$(verdicts found.tsv alone)" 15
 is "a record that settles: no others are claimed" "$(verdicts found.tsv overlap)" 0
 

@@ -44,6 +44,7 @@ complete_words() {
 if command -v bash >/dev/null; then
 	is 'completion offers all choices of an option' "$(complete_words roughgen --acf '')" 'gauss exp'
 	is 'completion offers the choices that begin as typed' "$(complete_words roughgen --acf g)" gauss
+	is 'completion offers choices with a hyphen' "$(complete_words debrisgen --criterion v)" von-mises
 	is 'completion works after an equals sign' "$(complete_words bemcontact --boundary = p)" periodic
 	is 'completion offers the options' "$(complete_words duet --m)" '--method --material'
 	is 'completion offers files otherwise' "$(cd "$top" && complete_words bpfilter READ)" README.md

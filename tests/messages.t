@@ -83,7 +83,7 @@ doubted "a rate too low for the pulses" '--rate 10 Hz: a pulse of 0.01 s has few
 doubted "noise of some volts" '--noise 5 V: .* is 5mV meant?' loud
 doubted "a leakage of cubic metres" '--threshold-leakage 2.8 m3/s: is 2.8L/min meant?' flood
 doubted "a gap of a metre" '--gap 1 m: is 1um meant?' abyss
-doubted "a pressure of some pascals" '--pressure 21 Pa hardly presses: is 21MPa meant?' light
+doubted "a pressure of some pascals" '--pressure 21 Pa is very low: is 21MPa meant?' light
 beyond='where the bodies touch, .* GPa, is above a tenth of the contact modulus of 115 GPa'
 doubted "a pressure beyond elasticity" "$beyond: .* --hardness" crushed
 # 0.4 E* times the rms slope, of 0.6 and 0.06

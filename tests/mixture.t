@@ -43,5 +43,5 @@ frames apart.au 8 >apart
 same "a record from a pipe gives the same result" piped apart
 head -c 32 mix.au >none.au
 fails "no frames" 3 "nothing in common" duet --method duet --align 0 none.au
-fails "a hop without a window" 2 "hop wants a --window" duet --method duet --align 0 --hop 9 mix.au
+fails "a hop without a window" 2 "hop requires a --window" duet --method duet --align 0 --hop 9 mix.au
 done_testing

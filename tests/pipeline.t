@@ -100,12 +100,12 @@ refuse() {
 	printf '# cmd: %s\nx\n1\n' "$2" >hostile
 	fails "$1" 1 "$3" records --replay hostile
 }
-refuse 'a header with another program' 'rm -rf /nowhere' "'rm' is no program of wearpipe"
-refuse 'a header with a program by its path' '/bin/sh -c true' "'/bin/sh' is no program"
-refuse 'a header with another program behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
+refuse 'a header with another program' 'rm -rf /nowhere' "'rm' is not a program of wearpipe"
+refuse 'a header with a program by its path' '/bin/sh -c true' "'/bin/sh' is not a program"
+refuse 'a header with another program behind ours' 'roughgen --points 4 | tee stolen' "'tee' is not a program"
 refuse 'a header with another program beside ours' 'roughgen --points 4; touch stolen' 'touch'
 refuse 'a header with a substitution' 'roughgen --points $(touch stolen)' 'a special character of the shell'
-refuse 'a header with a group of commands' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
+refuse 'a header with a group of commands' '{ roughgen --points 4; touch stolen; }' "'touch' is not a program"
 refuse 'a header with a redirection' 'roughgen --points 4 >stolen' 'a special character of the shell'
 is 'a replay executes no other program' "$(ls stolen 2>/dev/null)" ''
 printf 'x\n1\n' >silent

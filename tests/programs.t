@@ -62,7 +62,7 @@ if command -v python3 >/dev/null; then
 	is "a program without arguments does not wait for a terminal" \
 		"$? $(grep -c 'nothing to read: usage: debrisstat' tty)" "2 1"
 	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "debrisgen", "--yield", "1GPa"]) >> 8)' >tty </dev/null
-	is "nor does one with options" "$? $(grep -c 'nothing to read: name a file' tty)" "2 1"
+	is "a program with options does not wait for a terminal" "$? $(grep -c 'nothing to read: name a file' tty)" "2 1"
 	printf 't\ty\n0\t1\n1\t2\n\004' |
 		python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "wear-volume", "-"]) >> 8)' >tty
 	is "a terminal named as - is read" "$(grep -c 'nothing to read' tty)" 0

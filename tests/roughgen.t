@@ -198,7 +198,7 @@ fi
 fails "a range that runs backwards" 2 'is descending' roughgen -q 2um:1um
 fails "a bare prefix" 2 'q' roughgen -q 2u
 fails "Sq and Sa" 2 'exclude' roughgen -q 1um --sa 1um
-fails "roll-off without Hurst" 2 'need --hurst' roughgen --rolloff 1um
+fails "roll-off without Hurst" 2 '--rolloff requires --hurst' roughgen --rolloff 1um
 fails "level without file" 2 '--level: applies to a measured' roughgen --level
 fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
 fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s

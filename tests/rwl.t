@@ -264,7 +264,7 @@ for f in steps.tsv again.tsv; do
 done
 same "the output records all tables of fragments" steps.tsv.rows again.tsv.rows
 
-# Comparators and scores on an exponential leakage, which a grey model foretells.
+# Comparators and scores on an exponential leakage, which a grey model predicts.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
 rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv >out 2>err || echo "status $?" >>err
 is "the rate of the gap of an exponential leakage grows" "$(grep -c 'status 3\|the rate of the gap grows' err)" 2

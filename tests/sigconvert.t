@@ -2,7 +2,7 @@
 # sigconvert: recordings of other programs in and out, exact where the format is
 . "$(dirname "$0")/tap.sh"
 
-# samples FILE: all samples of a signal, parted by blanks
+# samples FILE: all samples of a signal, separated by blanks
 samples() {
 	sigconvert --output text "$1" | grep -v '^[#t]' | cut -f 2- | tr '\t\n' '  ' | sed 's/ $//'
 }
@@ -148,7 +148,7 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	printf 't\tu\n0\t0.5\n0.001\t2\n0.002\t-3\n' | sigconvert --from text --output flac --stats st >clip.flac 2>err
 	is "clipping is counted, reported and gives status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
 	is "clipping cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
-	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC want a whole number' sigconvert --output wav f.au
+	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC require a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
 	sigconvert --output wav a.tsv >whole.wav
@@ -209,7 +209,7 @@ is "aopf keeps the units" "$(sed -n 's/^# units: //p' life.tsv)" 'h l/min l/min 
 sigconvert --output table --columns 'leakage=flow, main' pump.csv | rwl --wear-rate filter - >rest.tsv 2>err
 printf 't leakage\n0 1.5\n20.5 1.52\n40 1.54\n60 1.58\n80 1.6\n' |
 	rwl --wear-rate filter --time-unit h --state-unit L/min - >want.tsv 2>err
-is "rwl converts them" "$(body rest.tsv)" "$(body want.tsv)"
+is "rwl converts the units of a table" "$(body rest.tsv)" "$(body want.tsv)"
 fails "a column of words" 1 "line 2: Remark: 'new' is not a number" sigconvert --output table pump.csv
 fails "a missing column is named with those of the table" 1 "no column 'Leak' among 'Time' 'Flow, main' 'Temp' 'Remark'" \
 	sigconvert --output table --columns Leak pump.csv

@@ -267,7 +267,7 @@ is "integers of one byte are read" "$(heights b.nrrd)" "1e-06 0 2e-06 0 3e-06 0"
 surfimport --pixel 1um --height-unit 1um long.npy >b.nrrd
 is "integers of eight bytes are read" "$(heights b.nrrd)" "5e-06 -3e-06"
 awk 'BEGIN { for (i = 0; i < 9; i++) print i * 0.5, i % 3 }' >places.txt
-fails "positions and heights for a matrix" 1 'positions and heights, are no matrix: --profile' \
+fails "positions and heights for a matrix" 1 'positions and heights, are not a matrix: --profile' \
 	surfimport --pixel 1um --height-unit 1um places.txt
 awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) print i, j, i * j }' >points.txt
 fails "points for a matrix" 1 'three columns look like points x, y, z' surfimport --pixel 1um --height-unit 1um points.txt

@@ -27,7 +27,7 @@ aopf plain >stream
 sed 's/$/\r/' stream >stream.dos
 { printf '\357\273\277'; cat stream; } >stream.marked
 ok 'a stream with DOS endings is whole' records --check stream.dos
-ok 'so is one with a byte order mark' records --check stream.marked
+ok 'a stream with a byte order mark is whole' records --check stream.marked
 sed 's/^\(.\)\(.*\)4/\1\25/' stream.dos >stream.bad
 fails 'a changed cell of a stream with DOS endings' 1 'damaged or edited' records --check stream.bad
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing

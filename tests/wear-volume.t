@@ -32,20 +32,20 @@ is 'the volume of non-ferrous particles is marked' "$? $(grep -c '1 rows are non
 # Below the skin depth d^5 = 60 d_ferrous^3 / (pi f mu0 sigma), bronze of 8e6 S/m.
 printf 'time1\tdiameter\tclass\n0.5\t2e-5\tnon-ferrous\n1.5\t1e-6\tferrous\n' >bronze.tsv
 wear-volume --non-ferrous bronze --excitation 200kHz bronze.tsv >volume.tsv 2>err
-near 'of a named material it is that of their own diameter' "$(column y volume.tsv | awk '{ pi = 3.14159265358979
+near 'the volume of particles of a named material is that of their own diameter' "$(column y volume.tsv | awk '{ pi = 3.14159265358979
 	printf "%.6f", $1 / (pi / 6 * (60 * 2e-5 ^ 3 / (pi * 2e5 * 4e-7 * pi * 8e6)) ^ 0.6) }')" 1 1e-3
-is 'and not marked' "$(wc -l <err | tr -d ' ')" 0
+is 'the volume of particles of a named material is not marked' "$(wc -l <err | tr -d ' ')" 0
 printf '2.5\t1e-5\tunclear\n' | cat bronze.tsv - >unclear.tsv
 wear-volume --non-ferrous bronze --excitation 200kHz unclear.tsv >volume.tsv 2>err
 is 'particles of unclear class are marked' "$? $(grep -c '1 rows are of unclear class' err)" "3 1"
-ok 'unless all are ferrous' wear-volume --non-ferrous ferrous unclear.tsv
+ok 'particles of unclear class are not marked if all are ferrous' wear-volume --non-ferrous ferrous unclear.tsv
 printf 'time1\tdiameter\tclass\tverdict\n0.5\t1e-5\tferrous\talone\n1.5\tnan\tunclear\tbubble\n' | wear-volume >volume.tsv 2>err
 is 'an event that is no particle has no class' "$? $(grep -c 'unclear class' err)" "0 0"
 fails 'a material where no class is known' 1 "no column 'class'" wear-volume --non-ferrous bronze um.tsv
 
 printf 'time1\tdiameter\tamplitude\tverdict\n0.5\t1e-3\t1\talone\n1.5\t1e-4\t-0.1\talone\n' >signs.tsv
 wear-volume signs.tsv >volume.tsv 2>err
-is 'so is that of pulses of both signs' "$? $(grep -c 'of 1 rows are positive, of 1 negative' err)" "3 1"
+is 'the volume of pulses of both signs is marked' "$? $(grep -c 'of 1 rows are positive, of 1 negative' err)" "3 1"
 ok 'pulses of one sign, of either polarity, are not marked' sh -c 'grep -v -e "-0.1" signs.tsv | wear-volume'
 
 printf 'time1\tdiameter\tverdict\n0.5\t1e-3\talone\n0.6\t1e-3\tmisfit\n1.5\t1e-3\talone\n' >doubt.tsv

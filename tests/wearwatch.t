@@ -28,7 +28,7 @@ sensorsim --duration 2s --uniform 100um:150um --number 20 --material steel=3,cop
 watch --state copper copper.au 2>said
 is 'pulses of the other sign are doubted as non-ferrous' "$? $(grep -c 'pulses have the other sign: non-ferrous' said)" '3 1'
 # duet doubts one of seven, which overlaps a larger pulse
-near 'as many as there are' "$(column doubts copper/chunks.tsv | tr ',' '\n' | awk -F : '/^signs/ { n += $2 } END { print n }')" \
+near 'all pulses of the other sign are counted' "$(column doubts copper/chunks.tsv | tr ',' '\n' | awk -F : '/^signs/ { n += $2 } END { print n }')" \
 	"$(column amplitude copper.tsv | awk '$1 < 0' | wc -l | tr -d ' ')" 1
 
 # Live, as a pipe: killed with all its children in the third hour, when a tenth of a second
@@ -96,6 +96,6 @@ fails 'an empty stream' 1 'empty' watch --state other
 fails 'no state' 2 'want --state' wearwatch hours.au
 fails 'a time without a number' 2 'want a time above 0' wearwatch --state other --chunk x hours.au
 fails 'an overlap as long as a chunk' 2 'less than a chunk' wearwatch --state other --chunk 1s --overlap 1s hours.au
-fails 'alarms of a life without an end' 2 'wants --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
+fails 'alarms of a life without an end' 2 'requires --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
 fails 'an unknown option' 2 'no such option' wearwatch --colour
 done_testing

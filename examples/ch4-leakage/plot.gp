@@ -41,8 +41,8 @@ set ylabel "order"; set yrange [0:62]
 plot "rule-insample.tsv" using "t":"order" with steps lc rgb blue title "by fit", \
 	"rule-window.tsv" using "t":"order" with steps lc rgb gold title "by a window of errors"
 
-# Life foretold at the end of the training: level and growth rate of a grey model are
-# one exponential through the present state and the limit at the end foretold.
+# Life predicted at the end of the training: level and growth rate of a grey model are
+# one exponential through the present state and the limit at the end predicted.
 rul(file) = real(system(sprintf("awk -F '\t' '!/^#/ { if (!k) { for (i = 1; i <= NF; i++) { if ($i == \"rul_q50\") k = i; if ($i == \"state\") s = i } } else if ($1 == %d) print $k }' %s", train, file)))
 state(file) = real(system(sprintf("awk -F '\t' '!/^#/ { if (!s) { for (i = 1; i <= NF; i++) if ($i == \"state\") s = i } else if ($1 == %d) print $s }' %s", train, file)))
 raw = real(system(sprintf("awk -F '\t' '!/^#/ && $1 == %d { print $NF / 3600 }' grey.tsv", 3600 * train)))

@@ -15,8 +15,8 @@
  *	printf("contact area ratio %g\n", r.area);
  *	wp_contact_free(c);
  *
- * Vollebregt, J. Optim.  Theory Appl. 160 (2014) 293; Stanley and Kato, J. Tribol. 119
- * (1997) 481 (periodic).
+ * Vollebregt, J. Optim. Theory Appl. 162 (2014) 931-953; Stanley and Kato, J. Tribol. 119
+ * (1997) 481-485 (periodic).
  */
 #ifndef WEARPIPE_CONTACT_H
 #define WEARPIPE_CONTACT_H

@@ -30,15 +30,12 @@ struct wp_debris;
 struct wp_debris_par {
 	int nx, ny;      /* cells */
 	double dx, dy;   /* cell size, m */
-	double cell;     /* height of the cells removed, m; 0: the depth is interpolated
-			  */
+	double cell;     /* height of the removed cells, m; 0: continuous depth */
 	int periodic;    /* as the contact was solved */
 	double poisson;  /* of the worn body */
 	double friction; /* coefficient; shear along +x */
 	double yield;    /* Pa */
-	int potential;   /* 1: all that fails is removed; 0: only what fails from the
-			  * surface down
-			  */
+	int potential;   /* 1: all failed material; 0: from the surface down only */
 	int threads;     /* >= 1 */
 };
 

@@ -1,5 +1,4 @@
-/* separate.h - wear particles from the record of two inductive sensors, as duet(1) finds
- * them
+/* separate.h - wear particles in the record of two inductive sensors, found as by duet(1)
  *
  *	struct wp_separate_par par = { .rate = 10e3 };
  *	struct wp_separate *s = wp_separate_new(&par, NULL);
@@ -26,10 +25,10 @@
 extern "C" {
 #endif
 
-/* How far a row may be trusted. */
+/* What a row represents, and whether it is reliable. */
 enum wp_verdict {
 	WP_ALONE,      /* one pulse in its section */
-	WP_OVERLAP,    /* several, told apart */
+	WP_OVERLAP,    /* one of several in its section, separated */
 	WP_MISFIT,     /* not described by the pulse of a particle */
 	WP_UNRESOLVED, /* the row stands for sources particles */
 	/* No particle: */
@@ -47,12 +46,11 @@ struct wp_transit {
 	double delay;        /* from sensor to sensor, s */
 	double velocity;     /* m/s */
 	double time1_se, time2_se, diameter_se, amplitude_se, delay_se, velocity_se;
-	double section; /* number of the stretch of pulses that it lies in, from 1 */
-	double sources; /* particles in that stretch */
-	double chi2;    /* of the stretch per degree of freedom */
-	int verdict;    /* enum wp_verdict */
-	double diameter_most; /* upper limit of the diameter in an unresolved stretch, m
-			       */
+	double section;       /* number of its section of the record, from 1 */
+	double sources;       /* particles in the section */
+	double chi2;          /* of the section, per degree of freedom */
+	int verdict;          /* enum wp_verdict */
+	double diameter_most; /* m: upper limit of diameters in an unresolved section */
 };
 
 /* What is known of the record; 0 where it is to be learned from it or is as in duet(1).

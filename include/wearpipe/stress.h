@@ -37,7 +37,7 @@ WP_API struct wp_stress *wp_stress_new(
 	const struct wp_stress_par *par, enum wp_status *status);
 WP_API void wp_stress_free(struct wp_stress *s);
 
-/* Takes a pressure of nx * ny cells (Pa, finite); it must stay as it is until the next
+/* Takes a pressure of nx * ny cells (Pa, finite), which must not change until the next
  * load. */
 WP_API enum wp_status wp_stress_load(struct wp_stress *s, const double *pressure);
 /* The von Mises stress (Pa) at a depth (m, >= 0) below the cell centres. */

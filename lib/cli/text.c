@@ -36,16 +36,11 @@ char *text_escape(const char *s)
 
 const char *text_file_name(const char *path)
 {
-	char *escaped, *quoted;
+	char *escaped = text_escape(path), *quoted;
 
-	if (*path && !path[strcspn(path, " \t\n'\":")]) {
-		escaped = text_escape(path);
-		if (!strcmp(escaped, path)) {
-			free(escaped);
-			return path;
-		}
-	} else {
-		escaped = text_escape(path);
+	if (*path && !path[strcspn(path, " \t\n'\":")] && strcmp(escaped, path) == 0) {
+		free(escaped);
+		return path;
 	}
 	quoted = xprintf("'%s'", escaped);
 	free(escaped);

@@ -17,9 +17,7 @@
  * The inverse of the half-space restricted to the contact is not the restricted
  * inverse: that needs a residual continued beyond the contact so that its image there
  * vanishes, see extension.h. */
-#include "contact/bccg.h"
-#include "contact/blocks.h"
-#include "contact/gradient.h"
+#include "contact/state.h"
 #include "num/fft.h"
 #include "num/lanes.h"
 #include "num/status.h"
@@ -323,7 +321,7 @@ static double balance_blocks(
 
 	if (s->sum[3] >= (1 - few) * t->active)
 		return share_step(c, missing, s);
-	blocks_keep_load(c);
+	contact_keep_load(c);
 	*s = contact_sweep(c, shift_step);
 	rest = share_step(c, missing, s);
 	if (s->sum[0] < 0)
@@ -400,11 +398,12 @@ static void renew_gap(struct contact *c, struct state *state)
 }
 
 /* The preconditioner for the mean residual, which counts only where the approach is
- * given. An error d of the approach asks for a load that depends on how the contacts lie,
- * and not on the length of the grid.  Of all multiples of the pressure, d F / sum p u of
- * it lowers the energy most; its load F, spread over the active cells, is what the mean
- * gets. Forty contacts of 256 x 256 cells and of strips take 1.2 times as many iterations
- * as with the load, and 1.1 to 3.7 times with 8 times the stiffness of the longest wave.
+ * given.  The load that corrects an error d of the approach depends on the arrangement of
+ * the contacts, not on the length of the grid.  Of all multiples of the pressure, d F /
+ * sum p u times it lowers the energy most; its load F, spread over the active cells, is
+ * the step of the mean.  Forty contacts of 256 x 256 cells and of strips take 1.2 times
+ * as many iterations as with the load, and 1.1 to 3.7 times with 8 times the stiffness of
+ * the longest wave.
  */
 static void match_mean(struct contact *c, const struct sweep *s)
 {

@@ -1,5 +1,9 @@
-/* blocks.c - see blocks.h */
-#include "contact/blocks.h"
+/* The load of small blocks of cells in a bounded step.  Bounds cut off what a step takes
+ * from cells near the edge of the contact.  Where the contact is rough down to the cells,
+ * much of the step is cut off; restored evenly over the grid, it misplaces load at every
+ * distance, which displaces far more than the step itself.  It is therefore restored
+ * close by, in the other cells of the block. */
+#include "contact/state.h"
 #include "num/lesser.h"
 #include <math.h>
 #include <string.h>
@@ -115,7 +119,7 @@ static void keep_rows(void *context, size_t job, int worker)
 	}
 }
 
-void blocks_keep_load(struct contact *c)
+void contact_keep_load(struct contact *c)
 {
 	pool_run(c->par.pool, ((size_t)c->par.ny + SIDE - 1) / SIDE, keep_rows, c);
 }

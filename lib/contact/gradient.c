@@ -1,7 +1,7 @@
 /* One step of the projected gradient: slow, but from any pressure that carries the load
  * it lowers the energy, which is strictly convex, so repeated steps converge whatever the
  * bounds are.  The other methods fall back on it. */
-#include "contact/gradient.h"
+#include "contact/state.h"
 #include <math.h>
 
 /* The gradient taken off, shifted, within the bounds: every cell takes part. */

@@ -1,6 +1,6 @@
 /* Nested iteration: a rough solution on a grid of half as many cells in each direction is
  * the initial guess, recursively. */
-#include "contact/grids.h"
+#include "contact/state.h"
 #include <math.h>
 #include <string.h>
 

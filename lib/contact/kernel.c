@@ -83,13 +83,6 @@ double kernel_patch(double dx, double dy, double x, double y)
 	       kernel_patch(dx, dy / 2, x, y + dy / 4);
 }
 
-double kernel_periodic(double estar, double qx, double qy)
-{
-	double q = hypot(qx, qy);
-
-	return q > 0 ? 2 / (estar * q) : 0;
-}
-
 double kernel_modulus(double e1, double nu1, double e2, double nu2)
 {
 	return 1 / ((1 - nu1 * nu1) / e1 + (1 - nu2 * nu2) / e2);

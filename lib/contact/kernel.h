@@ -15,12 +15,12 @@ struct contact_kernel {
 	/* Displacement at (x, y) from the centre of a cell dx * dy under unit pressure,
 	 * m/Pa; NULL if it is not known: then only periodic boundaries are possible. */
 	double (*patch)(const void *context, double dx, double dy, double x, double y);
-	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa; decreases with q.
-	 */
+	/* Factor in u^ = factor p^, m/Pa, at wavenumber q > 0, rad/m; falls with q. */
 	double (*wave)(const void *context, double q);
 };
 
-/* The half-space of a contact modulus, which must outlive the kernel. */
+/* The half-space of a contact modulus, which must outlive the kernel: wave factor
+ * 2 / (E* q). */
 struct contact_kernel kernel_halfspace(const double *estar);
 
 /* A half-space under a bonded layer of another material, against an elastic body: wave
@@ -37,10 +37,6 @@ struct contact_kernel kernel_coated(const struct kernel_coating *coating);
 /* I to full double precision (a few 1e-16 relative) everywhere outside the lines
  * |x| = dx / 2 and |y| = dy / 2, any aspect. */
 double kernel_patch(double dx, double dy, double x, double y);
-
-/* Factor of wavenumber (qx, qy), rad/m, in u^ = factor p^ of the periodic half-space:
- * 2 / (E* |q|), m/Pa; 0 at q = 0, where the mean displacement is taken as zero. */
-double kernel_periodic(double estar, double qx, double qy);
 
 /* 1 / E* = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, (2-4); E2 = INFINITY is rigid. */
 double kernel_modulus(double e1, double nu1, double e2, double nu2);

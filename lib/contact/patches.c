@@ -1,4 +1,5 @@
 #include "contact/patches.h"
+#include "num/select.h"
 #include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
@@ -128,13 +129,6 @@ double contact_corrected_area(
 	return fmax(area - (M_PI - 1 + M_LN2) / 24 * perimeter * width, 0);
 }
 
-static int compare(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 enum num_status contact_quantiles(
 	const double *pressure, size_t cells, const double *part, double *quantile, int n)
 {
@@ -146,15 +140,9 @@ enum num_status contact_quantiles(
 	for (size_t i = 0; i < cells; i++)
 		if (pressure[i] > 0)
 			sorted[loaded++] = pressure[i];
-	qsort(sorted, loaded, sizeof *sorted, compare);
-	for (int k = 0; k < n; k++) {
-		double place = loaded ? part[k] * (double)(loaded - 1) : 0;
-		size_t low = (size_t)place, high = low + 1 < loaded ? low + 1 : low;
-
-		quantile[k] = loaded ? sorted[low] + (place - (double)low) *
-							     (sorted[high] - sorted[low])
-				     : NAN;
-	}
+	sort_numbers(sorted, loaded);
+	for (int k = 0; k < n; k++)
+		quantile[k] = loaded ? sorted_quantile(sorted, loaded, part[k]) : NAN;
 	free(sorted);
 	return NUM_OK;
 }

@@ -1,8 +1,7 @@
 /* Polonsky and Keer, Wear 231 (1999) 206-219: conjugate gradients on the cells in
  * contact, a set updated from pressure and gap; two applications of the half-space per
  * iteration.  A cell at the hardness is out of the iteration until its gap opens. */
-#include "contact/pk.h"
-#include "contact/gradient.h"
+#include "contact/state.h"
 #include "num/fft.h"
 #include <math.h>
 #include <stdlib.h>

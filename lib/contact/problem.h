@@ -64,14 +64,13 @@ struct contact_result {
 	double energy;      /* elastic, J */
 	/* C = sum p (g - min g) / sum p (u - u0), where u0 is the least displacement or
 	 * 0, whichever is less: the relative duality gap, a bound of the error that is
-	 * computed from the pressure alone.  With W = sum p (u - u0), the energy sum p u
-	 * / 2
-	 * - sum p h exceeds that of the solution p* by at most C W, and sum (p - p*) K (p
-	 * - p*) is at most 2 C W, with any solver.  W is twice the elastic energy on a
-	 * free boundary and slightly more on a periodic one.  Cells out of contact do not
-	 * contribute.  With a hardness it is the gap of the problem with bounded pressure
-	 * if that is smaller; for a given approach it applies to the approach minus the
-	 * deepest overlap, which is at most C W / sum p. */
+	 * computed from the pressure alone.  With W = sum p (u - u0), e = p - p* the
+	 * error of the pressure, and any solver, the energy sum p u / 2 - sum p h exceeds
+	 * its minimum by at most C W, and sum e K e is at most 2 C W.  W is twice the
+	 * elastic energy on a free boundary and slightly more on a periodic one.  Cells
+	 * out of contact do not contribute.  With a hardness it is the gap of the problem
+	 * with bounded pressure if that is smaller; for a given approach it applies to
+	 * the approach minus the deepest overlap, which is at most C W / sum p. */
 	double optimality_gap;
 	long iterations; /* on the given grid */
 	long transforms; /* Fourier transforms on the given grid, padded or not */

@@ -2,14 +2,14 @@
  *
  * Bodies in contact under a normal load N that then bear a tangential load T < mu N
  * stick in one part of the contact and slip in the other, where the shear is mu p; at
- * T = mu N, but for rounding, all of it slips.  For
- * normal displacements that shear does not disturb (Dundurs' beta = 0, as for equal
- * materials) and a tangential compliance in proportion to the normal one,
+ * T = mu N, but for rounding, all of it slips.  For normal displacements that shear does
+ * not disturb (Dundurs' beta = 0, as for equal materials) and a tangential compliance in
+ * proportion to the normal one,
  *
  *	q = mu (p - p'),   T = mu (N - N')
  *
  * with p' the normal pressure under N': what is in contact under N' sticks.  Jaeger,
- * J. Tribol. 120 (1998) 677-684; Ciavarella, Int. J. Solids Struct. 35 (1998) 2349-2362.
+ * J. Tribol. 120 (1998) 677-684; Ciavarella, J. Appl. Mech. 65 (1998) 998-1003.
  * Exact in plane strain and for Poisson's ratio 0; otherwise shear also displaces across
  * its direction, which is neglected as Cattaneo and Mindlin do.
  *

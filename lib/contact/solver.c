@@ -1,7 +1,5 @@
 #include "contact/solver.h"
-#include "contact/bccg.h"
-#include "contact/grids.h"
-#include "contact/pk.h"
+#include "contact/state.h"
 #include "num/fft.h"
 #include "num/status.h"
 #include <errno.h>

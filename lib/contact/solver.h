@@ -26,8 +26,9 @@
  *		printf("%g\n", contact_result(c)->area);
  *	contact_free(c);
  *
- * Polonsky, Keer, Wear 231 (1999) 206-219; Vollebregt, JOTA 2014 (bound-constrained
- * conjugate gradients); Stanley, Kato, J. Tribol. 119 (1997) 481-485 (periodic).
+ * Polonsky, Keer, Wear 231 (1999) 206-219; Vollebregt, J. Optim. Theory Appl. 162
+ * (2014) 931-953 (bound-constrained conjugate gradients); Stanley, Kato, J. Tribol. 119
+ * (1997) 481-485 (periodic).
  */
 #ifndef CONTACT_SOLVER_H
 #define CONTACT_SOLVER_H

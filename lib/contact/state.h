@@ -7,6 +7,7 @@
 #include "contact/problem.h"
 #include "contact/transfer.h"
 #include "num/convolve.h"
+#include "num/status.h"
 #include "num/sweep.h"
 #include <math.h>
 
@@ -119,5 +120,31 @@ double contact_share_load(struct contact *c, contact_pass *pass, double missing,
 /* 1 if the duality gap has not decreased for many calls, because only rounding errors
  * remain or the method fails. */
 int contact_stalls(struct contact *c, double optimality_gap);
+
+/* bccg.c: preconditioned bound-constrained conjugate gradients. */
+enum num_status contact_make_preconditioner(
+	struct contact *c, const struct contact *lender);
+enum contact_status contact_solve_bccg(struct contact *c);
+/* blocks.c: shifts the direction of a step, in image, block by block, so that bounded it
+ * carries in each block what it carries unbounded, but takes no more than is there. */
+void contact_keep_load(struct contact *c);
+
+/* pk.c: Polonsky and Keer's single loop. */
+enum contact_status contact_solve_pk(struct contact *c);
+
+/* gradient.c: one step of the projected gradient, which always lowers the energy and
+ * keeps the load, or restores it.  contact_gap() is to follow. */
+void contact_gradient_step(struct contact *c);
+/* How many such steps to take: now and then one, while the optimality gap does not fall,
+ * and more where the energy has not fallen either.  s: sums just after contact_gap(). */
+int contact_gradient_due(struct contact *c, const struct sweep *s);
+/* 1 when it is time to ask that. */
+int contact_lingers(const struct contact *c);
+
+/* grids.c: between a grid and the next coarser one, down to some 32 cells a side. */
+int contact_can_coarsen(const struct contact_par *par, struct contact_par *coarse);
+void contact_average_height(struct contact *c);
+/* Returns the sum of the pressures. */
+double contact_interpolate_pressure(struct contact *c);
 
 #endif

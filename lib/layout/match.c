@@ -193,8 +193,8 @@ static double exposed(const struct match *m, const double *coil,
 	return sum / MATCH_OTHERS;
 }
 
-/* The probability; 0 as soon as it is known to be below least: a particle is in a window
- * during no less than the widest. */
+/* The probability; 0 as soon as it is known to be below least: the time during which
+ * another particle is in one of the windows is at least the width of the widest. */
 static double unique(
 	const struct match *m, const double *coil, int by_width, double least)
 {

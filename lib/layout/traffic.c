@@ -30,11 +30,6 @@ double traffic_alone(const struct traffic *t, double zone)
 	return sum;
 }
 
-double traffic_window(const struct traffic *t)
-{
-	return traffic_slowness(t, 1, 1) - traffic_slowness(t, 0, -1);
-}
-
 double traffic_unique(const struct traffic *t, double width)
 {
 	return exp(-t->arrivals * width);

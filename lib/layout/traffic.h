@@ -29,10 +29,6 @@ double traffic_alone(const struct traffic *t, double zone);
  * which differ from the oil by this share of the spread, -1 to 1. */
 double traffic_slowness(const struct traffic *t, double share, double along);
 
-/* Width of the window of transit times over a distance of 1 m, s; errors of measurement
- * are not included. */
-double traffic_window(const struct traffic *t);
-
 /* Probability that no other particle arrives within a window of this width, s. */
 double traffic_unique(const struct traffic *t, double width);
 

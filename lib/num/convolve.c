@@ -167,12 +167,6 @@ static size_t kernel_column(const struct convolve *c)
 	return c->my / 2 + 1;
 }
 
-void convolve_size(const struct convolve *c, size_t *mx, size_t *my)
-{
-	*mx = c->mx;
-	*my = c->my;
-}
-
 double *convolve_alloc(const struct convolve *c)
 {
 	return fft_alloc(c->lx * kernel_column(c));
@@ -384,15 +378,6 @@ static double complex *spectra(const struct convolve *c, int worker)
 	return (double complex *)(buffer(c, worker) + row_room(c));
 }
 
-static int is_zero(const double *row, size_t n)
-{
-	size_t i = 0;
-
-	while (i < n && row[i] == 0)
-		i++;
-	return i == n;
-}
-
 /* 1 if a row can be transformed where it is: of the full length, and aligned as the plans
  * were made for. */
 static int in_place(const struct convolve *c, size_t n, const double *row)
@@ -413,7 +398,7 @@ static void forward_rows(void *context, size_t job, int worker)
 
 		if (!p->x)
 			p->load(p->context, job * ROWS + k, row, worker);
-		if (is_zero(x, nx)) {
+		if (lanes_next(x, 0, nx) == nx) {
 			memset(spectrum + k * stride, 0, c->lx * sizeof *spectrum);
 			continue;
 		}

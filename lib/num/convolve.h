@@ -46,9 +46,6 @@ void convolve_free(struct convolve *c);
 /* The least number of points from n on that is transformed directly. */
 size_t convolve_good_period(size_t n);
 
-/* Points of the transform in each direction. */
-void convolve_size(const struct convolve *c, size_t *mx, size_t *my);
-
 /* Room for one kernel, to be freed with fft_free(); NULL when out of memory. */
 double *convolve_alloc(const struct convolve *c);
 

@@ -5,7 +5,7 @@ typedef uint64_t words4 __attribute__((vector_size(32)));
 /* Doubles that are looked at together, and those of the last steps. */
 enum { FEW = 4, MANY = 8 * FEW };
 
-static ALWAYS_INLINE void add_bits(words4 *any, const double *x)
+static inline void add_bits(words4 *any, const double *x)
 {
 	words4 w;
 
@@ -13,7 +13,7 @@ static ALWAYS_INLINE void add_bits(words4 *any, const double *x)
 	*any |= w;
 }
 
-static ALWAYS_INLINE int is_set(const words4 *w)
+static inline int is_set(const words4 *w)
 {
 	return ((*w)[0] | (*w)[1] | (*w)[2] | (*w)[3]) != 0;
 }

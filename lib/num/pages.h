@@ -15,10 +15,10 @@ enum { PAGES_LARGE = 2 << 20 };
 /* Asks for large pages within fresh memory; NULL and systems without them are ignored. */
 void pages_large(void *memory, size_t size);
 
-/* For programs, before they allocate: malloc() takes arrays of any size one beside the
- * other, so that they share large pages, from so many bytes, and keeps what is freed.
- * Memory is used no sooner than otherwise.  C libraries without the choice ignore it, and
- * so do systems that have less to promise. */
+/* For programs, before they allocate: from then on malloc() places arrays of any size
+ * side by side in a heap of this many bytes, so that they share large pages, and keeps
+ * freed memory.  Pages are still mapped on first use.  No effect with C libraries that do
+ * not support this, or on systems that cannot reserve as much. */
 void pages_reserve(size_t size);
 
 #endif

@@ -68,8 +68,8 @@ static size_t work_off(struct pool *p, struct lot *lot, uint32_t round, int numb
 	return done;
 }
 
-/* Its own jobs, then those that are left of the others.  Returns 1 if the last job of all
- * ended here. */
+/* The thread's own jobs, then the remaining ones of others.  Returns 1 if the last of all
+ * jobs ended here. */
 static int work(struct pool *p, uint32_t round, int number)
 {
 	size_t done = 0;

@@ -47,12 +47,11 @@ static double get_double(void *state)
 
 static const gsl_rng_type type = { "philox4x32-10", 0xffffffffUL, 0, sizeof(struct state),
 	set, get, get_double };
-const gsl_rng_type *const rng_philox = &type;
 
 gsl_rng *rng_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 {
 	gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* it aborts */
-	gsl_rng *rng = gsl_rng_alloc(rng_philox);
+	gsl_rng *rng = gsl_rng_alloc(&type);
 
 	gsl_set_error_handler(handler);
 	if (rng)

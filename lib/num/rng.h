@@ -6,8 +6,6 @@
 #include "num/philox.h"
 #include <gsl/gsl_rng.h>
 
-extern const gsl_rng_type *const rng_philox;
-
 /* NULL when out of memory.  Free with gsl_rng_free(). */
 gsl_rng *rng_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose);
 /* Starts an existing generator at the beginning of another stream. */

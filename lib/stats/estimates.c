@@ -158,8 +158,8 @@ static double draw_groups(struct bootstrap *b)
 	return drawn + fmax((double)n + empty - picks, 0) * per_group;
 }
 
-/* Particles of the draw in every step, or so far, as of so many realisations as there
- * are. */
+/* Particles of the draw in each step, or up to it, scaled to the number of realisations.
+ */
 static void sum_growth(struct bootstrap *b, double drawn)
 {
 	const struct ensemble_par *par = ensemble_par(b->e);

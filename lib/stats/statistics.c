@@ -353,7 +353,7 @@ static struct estimate t_interval(
 	return e;
 }
 
-/* Exponents that are told apart from a logarithm and from a step: over a decade of x, x^b
+/* Exponents that can be distinguished from a logarithm and a step: over a decade, x^b
  * differs from 1 + b ln x by b^2 / 2 (ln 10)^2, 3e-4 at the least of these, and at the
  * most of them, 20, a point at half the largest x lies 1e-6 of the rise above the first.
  */

@@ -102,8 +102,8 @@ static double amplitude_of(const struct table_in *t, int column, double *sign)
 	return fabs(a);
 }
 
-/* Pulses of one table, whose balls are equal: one of another particle changes the mean,
- * and copies of one tell nothing about their scatter. */
+/* The balls of one table are equal.  A pulse of another particle among theirs changes
+ * the mean, and the scatter of equal pulses is unknown. */
 static void compare(struct pulses *p, size_t from, const char *name)
 {
 	size_t n = p->n - from, far;
@@ -187,9 +187,9 @@ struct doubt {
 };
 
 /* Pulses of a table may share an error, such as that of the instrument which was
- * estimated from their record.  Their means are observations of
- * their own, and what they leave in doubt is the least that remains: about the constant
- * from two tables on, about the exponent from three. */
+ * estimated from their record.  The intervals are therefore at least those of the means
+ * of the tables, each a single observation: for the constant from two tables on, for the
+ * exponent from three. */
 static void allow_shared(const struct pulses *p, struct doubt *d)
 {
 	size_t tables = (size_t)balls.n;

@@ -24,6 +24,7 @@ static struct contact_kernel coated;
 
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
+	OPT_HEADING("Coating"),
 	{ 0, "coating", OPT_NUM, UNIT_LENGTH, &coating.thickness, 0, 1e6, "T",
 		"thickness of a bonded layer on the first body; 0: none", 0, 0 },
 	{ 0, "coating-young", OPT_NUM, UNIT_PRESSURE, &coating.young, 1e-6, 1e30, "E",
@@ -71,7 +72,7 @@ static void check_options(void)
 	if (isnan(press.estar))
 		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	opt_require("coating", "coating-young coating-poisson");
-	opt_require("table", "sweep");
+	opt_require("table", "sweep unload");
 	if (coating.thickness > 0)
 		set_coating();
 	slip_check();
@@ -79,7 +80,6 @@ static void check_options(void)
 		die(EXIT_USAGE, "--tangential excludes --coating");
 	if (fields & 1 << SHEAR && !slip_wanted())
 		die(EXIT_USAGE, "--fields shear requires --tangential and --friction");
-	unload_check();
 }
 
 /* The part of a record's work that the present solution is. */
@@ -278,7 +278,7 @@ static void doubt(const struct contact_par *par, const struct contact_result *fo
 		return;
 	said = 1;
 	if (found->pressure < 1e3 && !isnan(press.pressure))
-		warn("--pressure %g Pa hardly presses: is %gMPa meant?", press.pressure,
+		warn("--pressure %g Pa is very low: is %gMPa meant?", press.pressure,
 			press.pressure);
 	else if (touching > 0.1 * par->estar)
 		warn("the mean pressure where the bodies touch, %.3g GPa, is above a tenth "

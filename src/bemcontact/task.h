@@ -38,7 +38,6 @@ int slip_solve(const struct task *t, const struct contact_result *normal, double
  * with its gap.  The height that remains is written to residual, unless NULL, the rows of
  * unloading to --table.  1 if all converged. */
 extern struct opt unload_rows[]; /* for OPT_TABLE */
-void unload_check(void);
 int unload_wanted(void);
 int unload_solve(
 	const struct task *t, const struct contact_result *full, double *residual);

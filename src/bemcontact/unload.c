@@ -14,12 +14,6 @@ struct opt unload_rows[] = {
 	OPT_END,
 };
 
-void unload_check(void)
-{
-	if (steps > 0 && !table_wanted())
-		die(EXIT_USAGE, "--unload writes rows of a --table: want one");
-}
-
 int unload_wanted(void)
 {
 	return steps > 0;

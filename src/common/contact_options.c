@@ -28,7 +28,7 @@ struct opt press_rows[] = {
 	{ 0, "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
 		"mean pressure, in place of a load", 0, 0 },
 	{ 0, "approach", OPT_NUM, UNIT_LENGTH, &press.approach, -1e12, 1e12, "D",
-		"how far the flat goes past height 0, in place of a load", 0, 0 },
+		"displacement of the flat past height 0, in place of a load", 0, 0 },
 	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &press.young, 1e-6, 1e30, "E1[,E2]",
 		"Young's moduli of the bodies; one for both", 0, 0 },
 	{ 0, "poisson", OPT_LIST, UNIT_NONE, &press.poisson, -0.999, 0.5, "N1[,N2]",

@@ -1,8 +1,8 @@
 /* contact_options.h - how bodies are pressed together: options that bemcontact and
  * debrisgen share
  */
-#ifndef PRESS_H
-#define PRESS_H
+#ifndef CONTACT_OPTIONS_H
+#define CONTACT_OPTIONS_H
 
 #include "cli/opt.h"
 #include "contact/solver.h"

@@ -1,6 +1,6 @@
 /* quantile_columns.h - columns of quantiles, named by per cent: q05, q50, q97.5, q100 */
-#ifndef LEVELS_H
-#define LEVELS_H
+#ifndef QUANTILE_COLUMNS_H
+#define QUANTILE_COLUMNS_H
 
 #include "cli/opt.h"
 

@@ -1,6 +1,6 @@
 /* raw_layout.h - samples without a header: options of every program that reads fields */
-#ifndef RAW_H
-#define RAW_H
+#ifndef RAW_LAYOUT_H
+#define RAW_LAYOUT_H
 
 #include "cli/opt.h"
 #include "io/fields.h"

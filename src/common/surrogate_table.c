@@ -71,7 +71,7 @@ static double *place_of(
 			return scores->score + scores->count++;
 	}
 	die(EXIT_RUN,
-		"%s: line %ld: '%s %s' is nothing of a surrogate: fit it anew with debrisfit",
+		"%s: line %ld: '%s %s' is not part of a surrogate: fit it anew with debrisfit",
 		table_name(t), table_line(t), kind, name);
 }
 
@@ -115,7 +115,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 		whole = whole || (ones > 0 && all > 0);
 	}
 	if (rows != 2L * SURROGATE_PROPERTIES + scores || !whole)
-		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
+		die(EXIT_RUN, "%s: %ld rows: not a complete surrogate of debrisfit",
 			table_name(t), rows);
 	table_close(t);
 }

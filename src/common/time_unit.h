@@ -1,6 +1,6 @@
 /* time_unit.h - the unit that a table counts time in: an option of aopf and rwl */
-#ifndef TIMEUNIT_H
-#define TIMEUNIT_H
+#ifndef TIME_UNIT_H
+#define TIME_UNIT_H
 
 #include "cli/opt.h"
 #include "io/tables.h"

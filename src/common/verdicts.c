@@ -73,11 +73,6 @@ int verdict_doubted(const struct table_in *t)
 	return why != NULL;
 }
 
-int verdict_doubtful_too(void)
-{
-	return doubtful_too;
-}
-
 void verdict_report(void)
 {
 	stats_add("rows_doubtful", doubtful);
@@ -88,7 +83,7 @@ void verdict_report(void)
 		     "takes them in",
 			doubtful);
 	if (foreign > 0)
-		note("%.0f rows are shocks, bubbles, impulses or transients, and no particles",
+		note("%.0f rows are shocks, bubbles, impulses or transients, not particles",
 			foreign);
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",

@@ -23,8 +23,6 @@ enum verdict verdict_of(const struct table_in *t, int column);
 /* At the end of a table: whether a comment "# doubtful: why" says that its rows are not
  * to be relied on, with a warning. */
 int verdict_doubted(const struct table_in *t);
-/* 1 if doubtful rows are counted in. */
-int verdict_doubtful_too(void);
 /* Says how many rows have been left out since the last report, and adds them to the
  * counters. */
 void verdict_report(void);

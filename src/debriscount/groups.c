@@ -146,7 +146,7 @@ void groups_finish(struct groups *g, double last)
 		return;
 	if (g->reported == 0)
 		warn("no period of %g s is complete: the last particle is at %g s; "
-		     "--duration tells when the record ends",
+		     "specify the end of the record by --duration",
 			period, last);
 	note("particles after %g s belong to an incomplete period and are left out",
 		g->reported);

@@ -181,7 +181,7 @@ static struct stretch stretch_of(
 		d * cbrt(1 + 3 * SIGMAS_SELDOM * se / d) };
 }
 
-/* Probability of detection below which a particle stands for more than a hundred. */
+/* Probability of detection below which a particle counts as more than a hundred. */
 static const double HARDLY = 0.01;
 
 /* Reads all rows; returns the end of the record. */
@@ -193,7 +193,7 @@ static double count_rows(
 	const struct stretch_columns columns = { table_find(t, "sources"), cd,
 		table_find_quantity(t, "diameter_se", UNIT_LENGTH),
 		table_find_quantity(t, "diameter_most", UNIT_LENGTH) };
-	/* That of the middle of an unresolved section tells its length. */
+	/* The standard error of its middle gives the length of an unresolved section. */
 	int ce = table_find_quantity(t, "time1_se", UNIT_TIME),
 	    cb = by ? table_need(t, by) : -1;
 	double last = 0, late = 0, across = 0, begin = 0, end = groups_next(groups),
@@ -259,7 +259,7 @@ static double count_rows(
 	}
 	if (across > 0) {
 		warn("%.0f sections that are not resolved reach beyond their period and are "
-		     "counted in that of their middle: a longer --period tells better",
+		     "counted in that of their middle: choose a longer --period",
 			across);
 		groups_doubtful(groups);
 	}
@@ -299,7 +299,7 @@ int main(int argc, char **argv)
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "
-		     "--duration tells better",
+		     "specify --duration",
 			last);
 	if ((duration - last) / period > PERIODS_MOST)
 		die(EXIT_USAGE,

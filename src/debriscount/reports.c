@@ -274,7 +274,8 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		value[LARGEST + q] = sum->largest * scale;
 		possible[q] = sum->possible * scale;
 	}
-	/* In part of a period one particle may be a high rate, and none tells nothing. */
+	/* In an incomplete period a single particle may appear as a high rate, and the
+	 * absence of particles is no evidence of a low one. */
 	watched = value[RATE + r->par.alarm_mass] *
 		  (whole ? 1 : (end - begin) / r->par.period);
 	if (watched >= r->par.alarm)

@@ -1,6 +1,6 @@
 /* outputs.h - what debrisgen writes: particles, summary, worn surfaces and stress */
-#ifndef WORN_H
-#define WORN_H
+#ifndef OUTPUTS_H
+#define OUTPUTS_H
 
 #include "cli/opt.h"
 #include "debris/debris.h"

@@ -149,14 +149,14 @@ struct wearing {
 };
 
 /* Whether the contact of a step (from 1 in this run) is solved here. */
-static int solves(const struct wearing *w, long step)
+int wearing_solves(const struct wearing *w, long step)
 {
 	return step > 1 || w->counterface || law == ARCHARD;
 }
 
 int wearing_takes_heights(const struct wearing *w)
 {
-	return solves(w, w->steps) || richardson;
+	return wearing_solves(w, w->steps) || richardson;
 }
 
 /* Options of a contact that is not solved here. */
@@ -241,7 +241,7 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		die(EXIT_USAGE,
 			"--richardson: %dx%d cells: want multiples of 4, at least 32",
 			r->nx, r->ny);
-	if ((solves(w, w->steps) || richardson) && isnan(pressing.estar))
+	if ((wearing_solves(w, w->steps) || richardson) && isnan(pressing.estar))
 		die(EXIT_USAGE,
 			"--steps %ld solves contacts: specify --young or --estar, which %s does not state",
 			w->steps, fields_name(w->in));
@@ -273,11 +273,11 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 			fields_name(w->in), fields_count(w->in));
 	if (w->quick)
 		quick_prepare(w->quick, &w->par.stress);
-	if (w->debris && solves(w, w->steps))
+	if (w->debris && wearing_solves(w, w->steps))
 		w->contact = contact_new(&pressing);
 	if (w->counterface)
 		prepare_second(w, r);
-	if (!w->debris || (solves(w, w->steps) && !w->contact))
+	if (!w->debris || (wearing_solves(w, w->steps) && !w->contact))
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(w->in),
 			fields_count(w->in), r->nx, r->ny);
 }
@@ -334,11 +334,6 @@ static const double *pressed(struct wearing *w, const struct worn_surface *c, lo
 		w->steep_step = step;
 	}
 	return w->pair;
-}
-
-int wearing_solves(const struct wearing *w, long run)
-{
-	return solves(w, run);
 }
 
 int wearing_press(

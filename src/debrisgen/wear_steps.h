@@ -1,7 +1,7 @@
 /* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost
  */
-#ifndef WEARING_H
-#define WEARING_H
+#ifndef WEAR_STEPS_H
+#define WEAR_STEPS_H
 
 #include "outputs.h"
 
@@ -27,7 +27,7 @@ int wearing_press(
 	struct wearing *w, const struct worn_surface *c, double target, long step);
 /* Whether a step (from 1 in this run) solves the contact, or uses the pressure of the
  * input. */
-int wearing_solves(const struct wearing *w, long run);
+int wearing_solves(const struct wearing *w, long step);
 /* Wears c over a distance under its pressure; the removed material is valid until the
  * next call. *solved is 0 if a contact did not converge. */
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,

@@ -1,7 +1,7 @@
 /* example_options.h - what the networks of delaynet are trained and scored with: its
  * options */
-#ifndef LESSONS_H
-#define LESSONS_H
+#ifndef EXAMPLE_OPTIONS_H
+#define EXAMPLE_OPTIONS_H
 
 #include "cli/opt.h"
 #include "net/lesson.h"

@@ -1,6 +1,6 @@
 /* training_options.h - how delaynet trains a network: its options */
-#ifndef LEARNING_H
-#define LEARNING_H
+#ifndef TRAINING_OPTIONS_H
+#define TRAINING_OPTIONS_H
 
 #include "cli/opt.h"
 

@@ -186,7 +186,7 @@ int instrument_read(const struct instrument_place *place, struct instrument *in)
 		die(EXIT_RUN, "%s: '%s' is missing or out of range", table_name(t),
 			which);
 	if (status == INSTRUMENT_UNKNOWN)
-		die(EXIT_RUN, "%s: some rows are no part of an instrument",
+		die(EXIT_RUN, "%s: some rows do not belong to an instrument",
 			table_name(t));
 	table_close(t);
 	for (size_t i = 0; i < n; i++)

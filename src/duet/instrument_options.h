@@ -1,6 +1,6 @@
 /* instrument_options.h - what is known beforehand of the two sensors: options of duet */
-#ifndef INSTRUMENT_H
-#define INSTRUMENT_H
+#ifndef INSTRUMENT_OPTIONS_H
+#define INSTRUMENT_OPTIONS_H
 
 #include "cli/opt.h"
 #include "signal/learn/calibrate.h"

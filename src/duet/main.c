@@ -84,15 +84,15 @@ static void check_options(void)
 			spacing, spacing);
 	if (method != METHOD_DUET &&
 		(opt_given("window") || opt_given("hop") || histogram))
-		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
+		die(EXIT_USAGE, "--window, --hop and --histogram require --method duet");
 	if (method != METHOD_COUNT && (opt_given("sensor") || opt_given("floor")))
-		die(EXIT_USAGE, "--sensor and --floor need --method count");
+		die(EXIT_USAGE, "--sensor and --floor require --method count");
 	if (method == METHOD_COUNT && (separated || sections))
-		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+		die(EXIT_USAGE, "--method count excludes --sections and --separated");
 	if (method != METHOD_FIT && instrument_file)
-		die(EXIT_USAGE, "--instrument needs --method fit");
+		die(EXIT_USAGE, "--instrument requires --method fit");
 	if (method != METHOD_FIT && detectable)
-		die(EXIT_USAGE, "--detectable needs --method fit");
+		die(EXIT_USAGE, "--detectable requires --method fit");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
 	if (!opt_given("hop"))
@@ -101,7 +101,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);
 	if (is_mixture() && opt_given("hop") &&
 		(!opt_given("window") || hop > window / 2))
-		die(EXIT_USAGE, "--align 0: --hop wants a --window twice as long");
+		die(EXIT_USAGE,
+			"--align 0: --hop requires a --window at least twice as long");
 }
 
 static size_t to_samples(double time, double rate)

@@ -1,6 +1,6 @@
 /* outputs.h - what duet found, and the tables and signals it goes to */
-#ifndef FOUND_H
-#define FOUND_H
+#ifndef OUTPUTS_H
+#define OUTPUTS_H
 
 #include "io/signals.h"
 #include "io/tables.h"

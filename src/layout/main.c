@@ -14,7 +14,7 @@
  * 3e-3, 9e-5 and 2e-6. */
 enum { PHASES = 16, SUMMED = 4096 };
 static const double found =
-	5.7; /* deviations: detection threshold of duet for a lone pulse */
+	5.7; /* deviations: detection threshold of duet for an isolated pulse */
 
 enum method { AUTO, CLOSED, SUM };
 static const char *const methods[] = { "auto", "closed", "sum", NULL };

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "actions.h"
 #include "cli/msg.h"
 #include "io/fields.h"
 #include "io/signals.h"

@@ -1,4 +1,4 @@
-#include "join.h"
+#include "actions.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "cli/text.h"

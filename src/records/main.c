@@ -1,5 +1,5 @@
 /* records - list, pick, count and convert the records of a field stream */
-#include "check.h"
+#include "actions.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -9,9 +9,6 @@
 #include "io/fields.h"
 #include "io/gsf.h"
 #include "io/tables.h"
-#include "join.h"
-#include "people.h"
-#include "replay.h"
 #include "source.h"
 #include <math.h>
 #include <stdlib.h>
@@ -322,8 +319,6 @@ static const struct raw_layout *layout(void)
 	static struct raw_layout raw;
 	const struct raw_layout *given = raw_given();
 
-	if (raw_fields && !given)
-		die(EXIT_USAGE, "--fields needs --raw");
 	if (!given)
 		return NULL;
 	raw = *given;
@@ -356,6 +351,7 @@ int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
 
+	opt_require("raw", "fields");
 	if (!join && argc - first > 1)
 		die(EXIT_USAGE, "%s: one file at most, unless --join", argv[first + 1]);
 	if (join)
@@ -365,7 +361,7 @@ int main(int argc, char **argv)
 	else if (check)
 		status = check_stream(argv[first]);
 	else if (pretty)
-		people_show(argv[first]);
+		show_pretty(argv[first]);
 	else
 		convert(argv[first]);
 	return shell_done(status);

@@ -1,4 +1,4 @@
-#include "replay.h"
+#include "actions.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/text.h"
@@ -85,7 +85,7 @@ static void check_program(const struct parser *p, const char *name)
 
 	if (strchr(name, ' ') || !*name || !strstr(programs, padded))
 		die(EXIT_RUN,
-			"%s: its cmd is not replayed: '%s' is no program of wearpipe",
+			"%s: its cmd is not replayed: '%s' is not a program of wearpipe",
 			p->name, name);
 	free(padded);
 }

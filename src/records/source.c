@@ -123,7 +123,7 @@ static void settle_grid(const struct source *s, struct record *r, long line)
 					!near(position(s, i, 2), iz * r->dz, r->dz);
 	if (wrong)
 		die(EXIT_RUN,
-			"%s: line %ld: the record that ends here is no regular grid, x "
+			"%s: line %ld: the record that ends here is not a regular grid, x "
 			"fastest, from half a spacing on",
 			table_name(s->table), line);
 }

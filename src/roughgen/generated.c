@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { POINTS_MAX = 65536 };
-
 static const char *const acf_words[] = { "gauss", "exp", NULL };
 
 static struct opt_list points = { 1, { 256 } };
@@ -63,8 +61,7 @@ void generated_check(void)
 		die(EXIT_USAGE, "--pair excludes --slope");
 	if (opt_given("hurst") && (opt_given("acf") || opt_given("corr")))
 		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
-	if (!opt_given("hurst") && (opt_given("rolloff") || opt_given("longest")))
-		die(EXIT_USAGE, "--rolloff and --longest need --hurst");
+	opt_require("hurst", "rolloff longest");
 	if (rolloff > 0 && longest > 0 && longest < rolloff)
 		die(EXIT_USAGE, "--longest %g m is shorter than --rolloff %g m", longest,
 			rolloff);

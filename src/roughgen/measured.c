@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS_MAX = 65536 };
 enum { SEED = 1 }; /* of a roughness drawn: --seed is for generated surfaces */
 
 static struct opt_list crop, resample;

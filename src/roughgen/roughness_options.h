@@ -1,12 +1,14 @@
 /* roughness_options.h - how rough a surface shall be: options of roughgen for generated
  * and measured ones alike */
-#ifndef ROUGHNESS_H
-#define ROUGHNESS_H
+#ifndef ROUGHNESS_OPTIONS_H
+#define ROUGHNESS_OPTIONS_H
 
 #include "cli/opt.h"
 #include "surface/rough.h"
 
 extern struct opt roughness_rows[]; /* for OPT_TABLE */
+
+enum { POINTS_MAX = 65536 }; /* of a surface, along one direction */
 
 /* Dies where a range runs backwards. */
 void roughness_check(void);

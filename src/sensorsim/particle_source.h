@@ -5,8 +5,8 @@
  *		...
  *	source_close(s);
  */
-#ifndef SOURCE_H
-#define SOURCE_H
+#ifndef PARTICLE_SOURCE_H
+#define PARTICLE_SOURCE_H
 
 #include "cli/opt.h"
 #include "signal/simulate/passage.h"

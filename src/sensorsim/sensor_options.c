@@ -160,7 +160,8 @@ double sensors_half_pulse(double velocity)
 	return pulse_reach((enum pulse_shape)shape) * zone / velocity;
 }
 
-double sensors_calibration(void)
+/* Peak voltage over velocity and diameter cubed, V s/m4. */
+static double calibration(void)
 {
 	struct sensor_coil c = { coil.v[0], coil.v[1], coil.v[2], coil.v[3], coil.v[4],
 		coil.v[5], zone };
@@ -190,7 +191,7 @@ static double typical_peak(void)
 {
 	struct pipe pipe = sensors_pipe();
 
-	return sensor_voltage(sensors_calibration(), pipe_mean_velocity(&pipe), 100e-6);
+	return sensor_voltage(calibration(), pipe_mean_velocity(&pipe), 100e-6);
 }
 
 struct disturbances *sensors_disturbances(
@@ -236,7 +237,7 @@ struct scene *sensors_scene(uint64_t seed, uint32_t realisation)
 	struct scene_par par = { .rate = rate,
 		.shape = (enum pulse_shape)shape,
 		.length = zone,
-		.kappa = sensors_calibration(),
+		.kappa = calibration(),
 		.gain = gain,
 		.seed = seed,
 		.realisation = realisation,

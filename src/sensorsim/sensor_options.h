@@ -1,7 +1,7 @@
 /* sensor_options.h - the pipe, its two sensors and what disturbs them: options of
  * sensorsim */
-#ifndef SENSORS_H
-#define SENSORS_H
+#ifndef SENSOR_OPTIONS_H
+#define SENSOR_OPTIONS_H
 
 #include "cli/opt.h"
 #include "signal/simulate/passage.h"
@@ -18,8 +18,6 @@ struct pipe sensors_pipe(void);
 struct stream sensors_stream(uint64_t seed, uint32_t realisation);
 /* Time from the first trace of a pulse to its centre. */
 double sensors_half_pulse(double velocity);
-/* Peak voltage over velocity and diameter cubed, V s/m4. */
-double sensors_calibration(void);
 /* Duration of a pulse at mean velocity, s. */
 double sensors_pulse(void);
 double sensors_drift_time(void); /* s */

@@ -61,8 +61,8 @@ static FILE *put_aside(struct input *in)
 	return copy;
 }
 
-/* Of a WAV file that was cut off libsndfile reads what is there, and notes in its log
- * "data : 20000 (should be 11956)".  Recorders that stream announce 2 GiB or more. */
+/* libsndfile reads a truncated WAV file without an error, but notes in its log
+ * "data : 20000 (should be 11956)".  Streaming recorders announce 2 GiB or more. */
 static void check_whole(const struct recording *r)
 {
 	char log[1 << 14] = "";
@@ -151,7 +151,7 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
 
 	if (format->rate != info.samplerate)
-		die(EXIT_RUN, "%.17g Hz: WAV and FLAC want a whole number of hertz",
+		die(EXIT_RUN, "%.17g Hz: WAV and FLAC require a whole number of hertz",
 			format->rate);
 	info.format = o->to == TO_WAV ? SF_FORMAT_WAV | SF_FORMAT_DOUBLE
 				      : SF_FORMAT_FLAC | SF_FORMAT_PCM_24;

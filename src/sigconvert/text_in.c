@@ -395,7 +395,7 @@ static double simplest_rate(const struct text_in *t, double rate)
 	if (jitter > most + 0.25 / rate)
 		die(EXIT_RUN,
 			"%s: the times of the first %zu rows are not equally far apart: "
-			"samples are missing, or --rate tells better",
+			"samples are missing, or specify --rate",
 			t->name, t->nahead);
 	if (jitter > most)
 		most += jitter;
@@ -442,7 +442,7 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 		t->nahead++;
 	t->first = t->nahead ? *t->ahead : 0;
 	if (t->rate >= 0 && !isnan(rate) && rate != t->format.rate)
-		die(EXIT_USAGE, "--rate %g: the recording says %g Hz", rate,
+		die(EXIT_USAGE, "--rate %g: the recording states %g Hz", rate,
 			t->format.rate);
 	if (t->rate >= 0)
 		rate = t->format.rate;

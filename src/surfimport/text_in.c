@@ -319,7 +319,7 @@ static void refuse_points(const struct text *t)
 		return;
 	if (t->columns == 2 && is_sorted(t, 0))
 		die(EXIT_RUN,
-			"%s: two columns, positions and heights, are no matrix: --profile "
+			"%s: two columns, positions and heights, are not a matrix: --profile "
 			"reads them",
 			t->c->name);
 	if (t->columns == 3 && (is_sorted(t, 0) || is_sorted(t, 1)))

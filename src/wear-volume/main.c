@@ -17,7 +17,7 @@ static const struct opt opts[] = {
 	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
 		"time of the record between rows", NULL, 0 },
 	{ 0, "time-scale", OPT_NUM, UNIT_NONE, &time_scale, 1e-12, 1e12, "K",
-		"time of running that the same time of the record stands for", NULL, 0 },
+		"ratio of operating time to recorded time", NULL, 0 },
 	OPT_TABLE(verdict_rows),
 	OPT_TABLE(non_ferrous_rows),
 	OPT_END,
@@ -114,7 +114,7 @@ static long sum_rows(struct table_in *t, struct table_out *out)
 			part = table_part(t);
 		if (table_part(t) != part)
 			die(EXIT_RUN,
-				"%s: line %ld: another record begins: sum each for itself",
+				"%s: line %ld: another record begins: sum each record separately",
 				table_name(t), table_line(t));
 		if (time / period - (double)rows > PERIODS_MOST)
 			die(EXIT_RUN,

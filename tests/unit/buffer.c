@@ -81,7 +81,7 @@ int main(void)
 			sum += (mean.x[k] - 5) * (mean.x[k] - 5) * RATIO;
 		hidden += mean.hidden[k];
 	}
-	ok(largest < 1e-14, "they are the means of these samples");
+	ok(largest < 1e-14, "means are those of the samples given");
 	/* 245 means: a standard error of 9 %. */
 	ok(fabs(sum / (double)mean.n - 1) < 0.3,
 		"noise falls as the root of their number");
@@ -101,7 +101,8 @@ int main(void)
 	if (buffer_average(&fine, fine.n, RATIO, &mean) != NUM_OK)
 		return 1;
 	ok(mean.begin == DROPPED / RATIO + 1, "the first mean has a whole index");
-	ok(mean.x[0] == direct.x[mean.begin], "it is that of the same samples");
+	ok(mean.x[0] == direct.x[mean.begin],
+		"the first mean is that of the same samples");
 	buffer_clear(&fine);
 	buffer_clear(&mean);
 	buffer_clear(&direct);

@@ -51,9 +51,9 @@ static void test_noise(void)
 		slow += found();
 	}
 	ok(white == 0, "white noise has no bursts (%d of %d records)", white, SEEDS);
-	ok(stepped == 0, "nor has noise of a coarse converter (%d)", stepped);
-	ok(coloured == 0, "nor has coloured noise (%d)", coloured);
-	ok(slow == 0, "nor has noise that wanders (%d)", slow);
+	ok(stepped == 0, "noise of a coarse converter has no bursts (%d)", stepped);
+	ok(coloured == 0, "coloured noise has no bursts (%d)", coloured);
+	ok(slow == 0, "noise that wanders has no bursts (%d)", slow);
 }
 
 static void test_slow_changes(void)
@@ -86,16 +86,18 @@ static void test_pulses(void)
 	ok(small == 0, "pulses of four standard deviations are not bursts (%d)", small);
 	make_noise(1, 0);
 	x[N / 2] += 40;
-	ok(found(), "an impulse of one sample");
-	ok(bursts_found(x, N, 4, work), "... in the shortest means");
+	ok(found(), "an impulse of one sample is a burst");
+	ok(bursts_found(x, N, 4, work),
+		"an impulse of one sample is a burst in means of four samples");
 	make_noise(1, 0);
 	add_pulse(N / 2, 500, 40);
-	ok(found(), "a pulse of 500 samples");
-	ok(!bursts_found(x, N, 8, work), "... which no means of eight samples show");
+	ok(found(), "a pulse of 500 samples is a burst");
+	ok(!bursts_found(x, N, 8, work),
+		"a pulse of 500 samples is no burst in means of eight samples");
 	make_noise(1, 0);
 	x[3] += 45;
 	x[N - 3] += 45;
-	ok(found(), "impulses at the ends");
+	ok(found(), "impulses at the ends are bursts");
 }
 
 static void test_silence(void)
@@ -103,7 +105,7 @@ static void test_silence(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 1;
 	ok(!found(), "a constant has no bursts");
-	ok(!bursts_found(x, 8, 8, work), "nor has a record too short to tell");
+	ok(!bursts_found(x, 8, 8, work), "a record that is too short has no bursts");
 }
 
 static struct bursts_power power_of(uint64_t seed, double constant, double scale)
@@ -146,10 +148,12 @@ static void test_alike(void)
 	}
 	ok(white == SEEDS, "white noise is like white noise (%d of %d)", white, SEEDS);
 	ok(coloured == SEEDS, "coloured noise is like that of its colour (%d)", coloured);
-	ok(louder == 0, "noise a tenth louder is not (%d)", louder);
-	ok(other == 0, "nor is noise of another colour (%d)", other);
-	ok(crowd == 0, "nor are many weak pulses (%d)", crowd);
-	ok(slow == 0, "nor is a pulse that lasts too long to be a burst (%d)", slow);
+	ok(louder == 0, "noise a tenth louder is not like that of its colour (%d)",
+		louder);
+	ok(other == 0, "noise of another colour is not like it (%d)", other);
+	ok(crowd == 0, "many weak pulses are not like noise (%d)", crowd);
+	ok(slow == 0, "a pulse that is too long for a burst is not like noise (%d)",
+		slow);
 }
 
 int main(void)

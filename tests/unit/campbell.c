@@ -100,8 +100,9 @@ static void test_other_pulse(
 		ok(fabs(c.square - square) > 3 * c.square_se,
 			"by %s the sum of squares is wrong", wrong[k].what);
 		campbell_compare(y1, y2, N, p, wrong[k].duration, 0.9, &c);
-		ok(c.unlike > 0.2, "the spectrum shows it");
-		near(c.square, square, 2 * c.square_se, "and so does the standard error");
+		ok(c.unlike > 0.2, "a wrong pulse differs in spectrum");
+		near(c.square, square, 2 * c.square_se,
+			"the standard error includes the error by a wrong pulse");
 	}
 	shape_free(other);
 }
@@ -125,7 +126,8 @@ static void test_bands(enum pulse_shape pulse)
 	}
 	/* Chance leaves 0.1, and hardly ever three times that. */
 	ok(most < 0.3, "weak pulses have the spectrum of one of them");
-	near(c.square, sums[0], 3 * c.square_se, "and the sum of squares is right");
+	near(c.square, sums[0], 3 * c.square_se,
+		"the sum of squares of weak pulses is right");
 	for (int i = 0; i < PART; i++) {
 		double line = sqrt(2 * sums[0] * 100 * shape_energy(shape)) *
 			      sin(0.008 * 2 * acos(-1) * i);
@@ -136,7 +138,8 @@ static void test_bands(enum pulse_shape pulse)
 	campbell_estimate(y[0], y[1], PART, shape, 100, 0.9, &c);
 	campbell_compare(y[0], y[1], PART, shape, 100, 0.9, &c);
 	ok(c.unlike > 0.5, "a line among them shows in the spectrum");
-	near(c.square, sums[0], 2 * c.square_se, "and in the standard error");
+	near(c.square, sums[0], 2 * c.square_se,
+		"the standard error includes the error by a line");
 	shape_free(shape);
 }
 
@@ -183,10 +186,12 @@ static void test_most(enum pulse_shape pulse)
 	}
 	ok(held >= 0.95 * RUNS, "the energy bounds the squares of few pulses: %.0f of %d",
 		held, RUNS);
-	ok(factor < log(3), "and is within a factor of 3 of them: %.2f", exp(factor));
+	ok(factor < log(3),
+		"the bound by the energy is within a factor of 3 of the squares: %.2f",
+		exp(factor));
 	sum = add_few(shape, 0, half, same, 2, y, SECTION);
 	ok(campbell_most(y, SECTION, shape, 100) > sum,
-		"also of two that take away the most of each other");
+		"the energy bounds the squares of two pulses that cancel most of each other");
 	memset(y, 0, sizeof y);
 	ok(campbell_most(y, SECTION, shape, 100) < 0, "less than noise is no bound");
 	shape_free(shape);

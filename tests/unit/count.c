@@ -174,7 +174,8 @@ static void check_lines(void)
 	/* Bonferroni's inequality: slightly below */
 	near(outlier / RUNS, 0.095, 0.02,
 		"the test of outliers at 10 % finds one in 10 % of the cases without");
-	ok(found / RUNS > 0.99, "it finds one of eight deviations in all but %g of 2000",
+	ok(found / RUNS > 0.99,
+		"the test of outliers finds one of eight deviations in all but %g of 2000",
 		RUNS - found);
 	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points have no interval");
 }
@@ -290,9 +291,11 @@ static void check_stretches(double (*size)(double))
 		ok(one.unresolved + largest.unresolved == 0 && largest.volume.value == 0,
 			"a section that may hold nothing counts as none");
 		near(one.number.high, 103 + none, 1e-9,
-			"and its energy bounds the number of particles,");
-		near(larger.number.high, 4 + none, 1e-9, "which is a whole one,");
-		near(largest.number.high, none, 1e-9, "and 0 above that size");
+			"the energy of a section bounds the number of its particles");
+		near(larger.number.high, 4 + none, 1e-9,
+			"the bound of the number is a whole number");
+		near(largest.number.high, none, 1e-9,
+			"no particle is larger than one with the energy of the section");
 	}
 	classes_add_stretch(c, &(const struct stretch){ 10, NAN, NAN, NAN });
 	{

@@ -45,7 +45,7 @@ int main(void)
 	near(sum, 1, 4 * 1.46 / sqrt((double)BLOCK * BLOCKS),
 		"noise is measured without bias");
 	near(square, 1.46, 0.08,
-		"its standard error is 1.46 over the root of the samples");
+		"the standard error of the noise is 1.46 over the root of the samples");
 
 	for (int step = 0; step < 3; step++) {
 		double first = 0, second = 0, reference = 0;

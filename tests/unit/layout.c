@@ -156,15 +156,15 @@ static void check_traffic(void)
 
 	near(plug, exp(-200 * 0.1273 / v), 1e-15,
 		"equal particles stand alone with exp(-2 arrivals zone / v)");
-	near(traffic_window(&t), 0.05 / v, 1e-15,
-		"equal particles fall into a window of twice the spread");
-	near(traffic_unique(&t, 0.25 * traffic_window(&t)), exp(-100 * 0.25 * 0.05 / v),
-		1e-15,
+	near(traffic_slowness(&t, 1, 1) - traffic_slowness(&t, 0, -1), 0.05 / v, 1e-15,
+		"transit times of equal particles differ by up to twice the spread");
+	near(traffic_unique(&t, 0.25 * 0.05 / v), exp(-100 * 0.25 * 0.05 / v), 1e-15,
 		"equal particles are matched with exp(-2 arrivals spacing spread / v)");
 	t.pipe.profile = PIPE_LAMINAR;
 	t.spread = 0;
 	/* the wall is at 0.99 R, where the velocity is 2 U (1 - 0.99^2) */
-	near(traffic_window(&t) * v * 2, 1 / (1 - 0.99 * 0.99) - 1, 1e-9,
+	near((traffic_slowness(&t, 1, 1) - traffic_slowness(&t, 0, -1)) * v * 2,
+		1 / (1 - 0.99 * 0.99) - 1, 1e-9,
 		"a laminar profile spreads transit times from the axis to the wall");
 	for (t.arrivals = 1; t.arrivals < 200; t.arrivals *= 10)
 		ok(fabs(traffic_alone(&t, 0.1273) - alone_in_laminar(&t, 0.1273)) < 1e-5,

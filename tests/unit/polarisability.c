@@ -98,7 +98,9 @@ static void test_thin_skin(void)
 	ok(worst < 1e-12,
 		"up to 1e4 skin depths and mu 1e5 the moment is that of Wait's form (%.1g)",
 		worst);
-	ok(worst_im < 1e-11, "so is its imaginary part (%.1g)", worst_im);
+	ok(worst_im < 1e-11,
+		"the imaginary part of the moment is that of Wait's form (%.1g)",
+		worst_im);
 }
 
 static void test_limits(void)
@@ -176,7 +178,7 @@ static void test_classes(void)
 	near(classify_ferrous(of, share, 2, size, phase, se, f), like / (like + 3), 1e-9,
 		"the probability of a ferrous particle is that of Bayes");
 	near(classify_ferrous(of, share, 2, size, 0, se, f), 1 / (1 + 3 * like), 1e-9,
-		"so is that at the phase of ferrous particles");
+		"the probability at the phase of ferrous particles is that of Bayes");
 	near(classify_ferrous(of, share, 2, size, phase + 4 * M_PI, se, f),
 		like / (like + 3), 1e-9, "phases are counted modulo a turn");
 	ok(isnan(classify_ferrous(of, share, 2, size, M_PI / 2, 0.1, f)),

@@ -1,5 +1,4 @@
-/* bursts.h - does a record stand out of its noise anywhere? whatever the shape of what
- * does
+/* bursts.h - whether a record exceeds its noise anywhere, whatever the shape of the signal
  */
 #ifndef SIGNAL_BURSTS_H
 #define SIGNAL_BURSTS_H

@@ -7,8 +7,8 @@
  *	transient  a waveform at one sensor only
  *
  * The waveform is free otherwise, the level at either sensor too.  An event is named if
- * it leaves no more than noise, and if this is certain: a group of particles would leave
- * a tenth of the energy at least.
+ * its residual is no more than noise, and if this is certain: the residual of a group of
+ * particles would be at least a tenth of the energy.
  */
 #ifndef SIGNAL_FOREIGN_H
 #define SIGNAL_FOREIGN_H

@@ -1,4 +1,4 @@
-/* spikes.h - impulses: samples that stand out of those beside them further than pulses
+/* spikes.h - impulses: samples that differ from their neighbours by more than pulses
  * and noise do
  */
 #ifndef SIGNAL_SPIKES_H

@@ -1,6 +1,7 @@
 /* fir.c - band-pass filters by the window method, run directly or by overlap-save */
 #include "signal/filter/fir.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include "num/status.h"
 #include <complex.h>
 #include <math.h>
@@ -275,19 +276,12 @@ static const double *multiply(struct fir *fir, const double *past, size_t n)
 	return fir->out;
 }
 
-static int is_silent(const double *x, size_t n)
-{
-	size_t i = 0;
-
-	while (i < n && x[i] == 0)
-		i++;
-	return i == n;
-}
-
 /* Filters what follows the old samples; the result is valid until the next call. */
 static const double *filter(struct fir *fir, double *past, size_t n)
 {
-	if (is_silent(past, fir->taps - 1 + n)) {
+	size_t samples = fir->taps - 1 + n;
+
+	if (lanes_next(past, 0, samples) == samples) {
 		fir->left_out++;
 		return past;
 	}

@@ -1,4 +1,4 @@
-#include "people.h"
+#include "actions.h"
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "io/input.h"
@@ -65,7 +65,7 @@ static void show_cell(const struct table_in *t, int k, int width)
 	free(shown);
 }
 
-void people_show(const char *path)
+void show_pretty(const char *path)
 {
 	struct table_in *t = table_with_comments(input_open(path), show_comment, NULL);
 	int more = table_next(t), n = table_columns(t);
