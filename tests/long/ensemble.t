@@ -4,7 +4,7 @@
 . "$(dirname "$0")/../tap.sh"
 
 surfaces='roughgen --points 64 --length 10um --sq 0.1um --corr 1um'
-rest='bemcontact --pressure 50MPa --young 210GPa | debrisgen --yield 355MPa --friction 0.3 2>/dev/null'
+rest='bemcontact --pressure 50MPa --young 210GPa --boundary periodic | debrisgen --yield 355MPa --friction 0.3 2>/dev/null'
 eval "$surfaces --count 8 | $rest" >whole
 command="$surfaces --first \$K | $rest"
 
