@@ -74,6 +74,18 @@ is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '
 	{ rows++ }
 	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print (rows ? bad + 0 : "no rows") }' quick.tsv)" 0
 
+# The border of a free grid cuts particles off, estimated or not.
+roughgen --points 32 --length 0.25mm --sq 1um --corr 10um --seed 6 |
+	bemcontact --pressure 50MPa --young 210GPa >flat.nrrd
+for kind in full quick; do
+	set --
+	[ $kind = full ] || set -- --surrogate surrogate.tsv --width 10 --audit 0 --stats stats
+	debrisgen --yield 355MPa --friction 0.3 "$@" flat.nrrd >/dev/null 2>said
+	is "status 3 where particles of the $kind model are cut off at the border" \
+		"$? $(grep -c 'cut off at the border of the grid, where up to [23]. % more volume is lost' said)" '3 1'
+done
+is 'the volume of the surface that is cut off is estimated' "$(column surfaces_estimated stats)" 1
+
 # A surface has the same particles alone as after others.
 contacts 10 4 >four.nrrd
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 four.nrrd 2>said |

@@ -260,6 +260,43 @@ is "status 3 where the edge carries more than half of the load" "$(status_with 0
 loaded 2 0 2 | debrisgen -Y 1GPa --boundary periodic --summary summary.tsv 2>warning >t.tsv
 is "a periodic surface has no edge" "$(summary edge_load) $(cat warning)" "0 "
 
+# Material that fails at the border goes on beyond it, under cells without load: 2 GPa on a
+# paraboloid of radius 6 cells whose centre is CENTRE cells from the border, on 32 rows.
+# patch CENTRE CELLS: on so many columns, those beyond 32 on the near side
+patch() {
+	perl -e 'my ($centre, $nx) = @ARGV; $centre += $nx - 32; binmode STDOUT;
+		print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
+			"sizes: 2 $nx 32\nspacings: 1 1e-5 1e-5\nfields:=height m, pressure Pa\n\n";
+		for my $y (0 .. 31) { for my $x (0 .. $nx - 1) {
+			my $r = (($x - $centre) ** 2 + ($y - 16) ** 2) / 36;
+			print pack "d<2", 0, $r < 1 ? 2e9 * sqrt(1 - $r) : 0 } }' "$@"
+}
+for centre in 5 6; do # the outermost cells carry 4 % of the load, and none
+	patch $centre 32 >cut.nrrd
+	fails "status 3 where a particle is cut off at the border, $centre cells from its centre" 3 \
+		'1 steps whose particles are cut off at the border of the grid, where up to .* % more volume is lost .*: use a larger' \
+		$wear --summary summary.tsv cut.nrrd
+	within=$(summary volume)
+	bound=$(sed -n 's/.*up to \([0-9]*\) %.*/\1/p' err)
+	patch $centre 64 | $wear --summary summary.tsv >t.tsv 2>err
+	is "on a larger grid the same particle is whole, $centre cells from its centre" "$? $(cat err)" "0 "
+	missing=$(awk -v a="$within" -v b="$(summary volume)" 'BEGIN { print 100 * (b / a - 1) }')
+	at_most "it is larger by no more than the warning says, $centre cells from its centre" "$missing" "$bound"
+	at_most "it is larger, $centre cells from its centre" 0.5 "$missing"
+done
+# Farther away it still reaches the border, with little.
+patch 7 32 | $wear --summary summary.tsv >t.tsv 2>err
+is "a particle that hardly reaches the border gives no warning" "$? $(column x_low t.tsv) $(cat err)" "0 0 "
+within=$(summary volume)
+patch 7 64 | $wear --summary summary.tsv >t.tsv 2>err
+near "it is not larger on a larger grid" "$(awk -v a="$within" -v b="$(summary volume)" 'BEGIN { print b / a }')" 1 0.005
+for option in '--shear y' '--removal potential' '--depth-step 5um'; do
+	# shellcheck disable=SC2086 # words
+	fails "a particle is cut off with $option" 3 'cut off at the border' $wear $option cut.nrrd
+done
+$wear --boundary periodic cut.nrrd >t.tsv 2>err
+is "a periodic grid cuts no particle off" "$? $(cat err)" "0 "
+
 # A ridge that goes round a periodic grid has no end, and so no length.
 perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
 	"sizes: 2 16 16\nspacings: 1e-5 1e-5 1e-5\nfields:=height m, pressure Pa\nboundary:=periodic\n\n";

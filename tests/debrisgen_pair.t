@@ -120,6 +120,39 @@ near "Archard: the depth of many parts is what the deepest cell has lost, um" "$
 $wear --steps 6 --counterface b.nrrd --slide 0.125mm --wears both a.nrrd 2>told >p
 ok "slopes beyond the theory give a warning" grep -q "rms slope .* above 0.2, the limit .* --hardness" told
 
+# A ball of 5 mm is pressed 60 um from the border of a free grid, nearly the radius of the contact.
+# Friction drags the first body towards +x and the second towards -x, so the near border cuts
+# off the particle of the second one, the far border that of the first.
+ball() { # SIDE: of the grid
+	perl -e 'binmode STDOUT; my $d = 0.5e-3 / 48;
+		print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
+			"sizes: 1 48 48\nspacings: 1 $d $d\nfields:=height m\n\n";
+		for my $y (0 .. 47) { for my $x (0 .. 47) { my $from = $ARGV[0] eq "far" ? 47 - $x : $x;
+			print pack "d<", -(($d * ($from + 0.5) - 60e-6) ** 2 + ($d * ($y - 23.5)) ** 2) / 10e-3 } }' "$1"
+}
+pressed="--friction 0.3 --young 210GPa --load 10N --boundary free --counterface flat.nrrd --slide 0"
+for side in near far; do
+	ball $side >side.nrrd
+	for worn in first second both; do
+		case $side,$worn in
+		near,first | far,second)
+			# shellcheck disable=SC2086 # words
+			debrisgen --yield 355MPa --wears $worn $pressed side.nrrd >p 2>err
+			is "the $side border leaves the $worn body whole" "$? $(rows p | wc -l) $(cat err)" "0 1 "
+			;;
+		*)
+			# shellcheck disable=SC2086
+			fails "the $side border cuts off wear of $worn" 3 'cut off at the border .* up to 21 % more volume' \
+				debrisgen --yield 355MPa --wears $worn $pressed side.nrrd
+			;;
+		esac
+	done
+done
+# By Archard's law the bodies wear where they are loaded, and nowhere else.
+# shellcheck disable=SC2086
+debrisgen --law archard --wear-rate 1e-15 $pressed side.nrrd >p 2>err
+is "Archard's law cuts nothing off" "$? $(cat err)" "0 "
+
 fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
 fails "a worn counterface without a counterface" 2 '\--counter-surface requires --counterface' \
 	$wear --counter-surface worn.nrrd start.nrrd

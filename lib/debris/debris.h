@@ -36,6 +36,8 @@ struct debris_step {
 	double max_pressure;
 	double volume; /* worn in this step, m3 (2-15) */
 	double depth;  /* of the deepest removed material, m */
+	double beyond; /* bound of the volume that would be lost beyond the border of a
+			* free grid, m3; 0 if periodic */
 	struct wear_result wear;
 	size_t count;
 	const struct particle *particle; /* valid until the next call */
@@ -67,6 +69,9 @@ enum debris_status debris_load(struct debris *d, const double *pressure);
  * other body; or NULL) by the loss of each column. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
+
+/* Faces of a column on the border of a free grid: their widths, m; 0 if periodic. */
+double debris_border(const struct stress_par *par, size_t ix, size_t iy);
 
 /* Depth below which nothing may fail, m. */
 double debris_deepest(const struct stress_par *par);

@@ -161,6 +161,7 @@ static void take_node(struct footprints *f, struct footprint *r, struct stress_n
 	double x = n.ix * s->dx, y = n.iy * s->dy;
 
 	r->cells++;
+	r->border += debris_border(s, (size_t)n.ix, (size_t)n.iy);
 	r->stress = larger_double(r->stress, n.value);
 	r->x += x + 0.5 * s->dx;
 	r->y += y + 0.5 * s->dy;

@@ -20,6 +20,7 @@
 struct footprint {
 	size_t cells;
 	double area;            /* m2 */
+	double border;          /* length of its outline on the border of the grid, m */
 	double x, y;            /* centroid, m */
 	double low[2], high[2]; /* bounding box, m */
 	size_t first;           /* its first cell in order of y and x */

@@ -18,6 +18,11 @@ static const double EDGE_LOAD = 0.05;
 enum { RESERVE = 256 << 20 };
 /* From half of the load on, the contact is mostly with what the grid has cut off. */
 static const double EDGE_MOST = 0.5;
+/* Bound of the volume lost beyond the border, over that within, that is worth a warning:
+ * errors of the volumes of single surfaces are smaller (debrisgen(1), Accuracy).  Of 470
+ * rough surfaces none of the 243 below it lost more beyond the border
+ * (tests/bench/border.sh). */
+static const double BEYOND = 0.05;
 
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
@@ -43,8 +48,8 @@ static const struct prog prog = { "debrisgen",
 	"fields: height, pressure, from bemcontact", "table: one row per wear particle",
 	opts };
 
-/* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
- * the worst of them. */
+/* A share of the load or of the volume, on the edge of a free grid: steps with more than
+ * a limit, and the worst of them. */
 struct edge {
 	long steps, realisation, step;
 	double most;
@@ -52,7 +57,7 @@ struct edge {
 
 /* The state of a run over all records. */
 struct run {
-	struct edge edge;
+	struct edge edge, border;
 	struct fields_in *in;
 	struct wearing *wearing;
 	struct worn *out; /* NULL before the first record */
@@ -135,6 +140,17 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 			fields_name(run->in), fields_count(run->in));
 }
 
+static void note_edge(
+	struct edge *e, double share, double limit, const struct scene *c, long step)
+{
+	e->steps += share > limit;
+	if (share > e->most) {
+		e->most = share;
+		e->realisation = c->now.r->realisation;
+		e->step = step;
+	}
+}
+
 /* 1 if the contact is too large for a further step. */
 static int check_contact(struct run *run, struct scene *c, long step)
 {
@@ -142,13 +158,7 @@ static int check_contact(struct run *run, struct scene *c, long step)
 	struct debris_step s;
 
 	wearing_contact(run->wearing, &c->now, &s);
-	if (s.edge_load > EDGE_LOAD)
-		run->edge.steps++;
-	if (s.edge_load > run->edge.most) {
-		run->edge.most = s.edge_load;
-		run->edge.realisation = c->now.r->realisation;
-		run->edge.step = step;
-	}
+	note_edge(&run->edge, s.edge_load, EDGE_LOAD, c, step);
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
 	warn("%s: realisation %ld: stopped before step %ld: %.3g of the cells in contact, "
@@ -173,6 +183,19 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 	stats_add("particles_endless", (double)endless);
 }
 
+/* What either body may lose beyond the border, relative to what it loses within. */
+static void check_border(
+	struct run *run, const struct scene *c, const struct worn_step *s)
+{
+	const struct debris_step *body[] = { s->lost, s->second };
+	double most = 0;
+
+	for (int k = 0; k < 2; k++)
+		if (body[k] && body[k]->volume > 0)
+			most = fmax(most, body[k]->beyond / body[k]->volume);
+	note_edge(&run->border, most, BEYOND, c, s->number);
+}
+
 static void wear_step(struct run *run, const struct scene *c, long step)
 {
 	double length = amplification * wearing_length(c->now.r);
@@ -183,6 +206,7 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 	if (!solved)
 		run->status = EXIT_NOCONV;
 	check_ends(run, c, &s);
+	check_border(run, c, &s);
 	s.length = length;
 	s.distance = (double)step * length;
 	worn_put(run->out, &c->now, &s);
@@ -244,6 +268,20 @@ static void warn_of_edge(struct run *run)
 			e->step);
 }
 
+static void warn_of_border(struct run *run)
+{
+	const struct edge *e = &run->border;
+
+	stats_add("border_steps", (double)e->steps);
+	if (!e->steps)
+		return;
+	run->status = EXIT_NOCONV;
+	warn("%s: %ld steps whose particles are cut off at the border of the grid, where up "
+	     "to %.0f %% more volume is lost (realisation %ld, step %ld): use a larger "
+	     "area, roughgen --crown auto, or --boundary periodic",
+		fields_name(run->in), e->steps, 100 * e->most, e->realisation, e->step);
+}
+
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv);
@@ -265,6 +303,7 @@ int main(int argc, char **argv)
 	}
 	progress_clear();
 	warn_of_edge(&run);
+	warn_of_border(&run);
 	if (!wearing_warn(run.wearing))
 		run.status = EXIT_NOCONV;
 	worn_close(run.out);

@@ -107,6 +107,14 @@ static int chosen(long realisation)
 	return u - floor(u) < audit;
 }
 
+/* As in debris.c, below the border as deep as on average. */
+static double beyond(const struct footprint *f)
+{
+	double depth = f->volume / f->area;
+
+	return 0.5 * f->border * depth * depth;
+}
+
 static int is_wide(const struct surrogate_guess *total)
 {
 	return total->high > total->volume * (1 + width) ||
@@ -153,6 +161,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 		q->particle[i] = particle_of(&list[i], &q->guess[i]);
 		step->wear.stress = fmax(step->wear.stress, list[i].stress);
 		step->wear.columns += (long)list[i].cells;
+		step->beyond += beyond(&list[i]);
 	}
 	return 1;
 }

@@ -38,6 +38,37 @@ static void press(double *p, int seed)
 	}
 }
 
+/* Loads in one corner.  Beyond the border each stretch stands for the integral of the
+ * depth over its height, on either side that it has there; a periodic grid has no border.
+ */
+static void test_beyond(enum wear_rule rule, const char *name)
+{
+	struct debris_par par = plain(rule);
+	struct debris *d = debris_new(&par);
+	double p[CELLS] = { 0 }, want = 0;
+	struct debris_step step;
+
+	for (int y = 0; y < 3; y++)
+		for (int x = 0; x < 3; x++)
+			p[(NY - 1 - y) * NX + x] = 1e9;
+	ok(debris_step(d, NULL, p, &step) == DEBRIS_OK, "%s: a corner is loaded", name);
+	for (size_t i = 0; i < step.wear.count; i++) {
+		const struct stretch *s = &step.wear.stretch[i];
+		double width = (s->column % NX == 0 ? 1e-6 : 0) +
+			       (s->column / NX == NY - 1 ? 2e-6 : 0);
+
+		want += width * (s->bottom * s->bottom - s->top * s->top) / 2;
+	}
+	ok(want > 0.05 * step.volume, "it fails at the border");
+	near(step.beyond / want, 1, 1e-12, "that stands for what is lost beyond it");
+	debris_free(d);
+	par.stress.periodic = 1;
+	d = debris_new(&par);
+	ok(debris_step(d, NULL, p, &step) == DEBRIS_OK && step.beyond == 0,
+		"nothing is lost beyond a periodic grid");
+	debris_free(d);
+}
+
 static void test_balance(enum wear_rule rule, const char *name)
 {
 	struct debris_par par = plain(rule);
@@ -287,7 +318,9 @@ static void test_refusals(void)
 
 int main(void)
 {
+	test_beyond(WEAR_COLUMN, "columns");
 	test_balance(WEAR_COLUMN, "columns");
+	test_beyond(WEAR_POTENTIAL, "all that fails");
 	test_balance(WEAR_POTENTIAL, "all that fails");
 	test_rules();
 	test_symmetry();
