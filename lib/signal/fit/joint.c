@@ -1,4 +1,5 @@
 /* joint.c - see joint.h */
+#include "num/sigmas.h"
 #include "signal/fit/joint_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -98,6 +99,59 @@ static int are_more(struct joint *j)
 	return j->m == j->scene.max_pulses && search(j, NULL, 0).z2 > j->scene.threshold;
 }
 
+/* Degrees of freedom of the record without those that the pulses take. */
+static double degrees(const struct joint *j)
+{
+	double visible =
+		(double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
+
+	return (1 - j->scene.lost) * visible - j->taken;
+}
+
+/* The search for pulses: candidates that were not worth it since the last one that was,
+ * and by how much the latest ones have reduced chi-square. */
+enum { TRIES = 3 + JOINT_PULSES_MAX / 8, LATEST = 3 };
+struct pursuit {
+	struct candidate tried[TRIES];
+	int failed, found;
+	double gain[LATEST];
+};
+
+/* 1 if as many more pulses as there may be leave more than noise although each of them
+ * reduces chi-square by as much as the best of the latest: the clearest are found first.
+ */
+static int is_hopeless(const struct joint *j, const struct pursuit *p)
+{
+	double dof = fmax(degrees(j) - PAR * j->m, 1), most = 0;
+
+	for (int i = 0; i < LATEST; i++)
+		most = fmax(most, p->gain[i]);
+	return p->found >= LATEST &&
+	       j->result.chi2 - (j->scene.max_pulses - j->m) * most >
+		       dof * (1 + CHI_SQUARE_MORE) + SIGMAS_NEVER * sqrt(2 * dof);
+}
+
+/* Adds pulses one by one; 1 if that is hopeless. */
+static int add_pulses(struct joint *j, struct pursuit *p)
+{
+	while (p->failed < 3 + j->m / 8 && j->m < j->scene.max_pulses) {
+		struct candidate c = search(j, p->tried, p->failed);
+		double before = j->result.chi2;
+
+		if (c.z2 < 0.3 * j->scene.threshold_near)
+			break;
+		if (!joint_try_pulse(j, &c)) {
+			p->tried[p->failed++] = c;
+			continue;
+		}
+		p->failed = 0;
+		p->gain[p->found++ % LATEST] = before - j->result.chi2;
+		if (is_hopeless(j, p))
+			return 1;
+	}
+	return 0;
+}
+
 static int by_time(const void *x, const void *y)
 {
 	const struct joint_pulse *p = x, *q = y;
@@ -108,9 +162,7 @@ static int by_time(const void *x, const void *y)
 static void finish(struct joint *j, int full, struct joint_pulse *pulses,
 	struct joint_result *result)
 {
-	double visible =
-		(double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
-	double dof = (1 - j->scene.lost) * visible - j->taken;
+	double dof = degrees(j);
 
 	qsort(j->pulse, (size_t)j->m, sizeof *j->pulse, by_time);
 	joint_fill_covariance(j);
@@ -127,27 +179,17 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int *m,
 	struct joint_result *result)
 {
-	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
-	struct candidate tried[TRIES];
-	int failed = 0, full;
+	struct pursuit pursuit = { .failed = 0 };
+	int hopeless, full;
 
 	if (status != JOINT_OK)
 		return status;
 	joint_fit_all(j);
 	do {
-		while (failed < 3 + j->m / 8 && j->m < s->max_pulses) {
-			struct candidate c = search(j, tried, failed);
-
-			if (c.z2 < 0.3 * s->threshold_near)
-				break;
-			if (joint_try_pulse(j, &c))
-				failed = 0;
-			else
-				tried[failed++] = c;
-		}
+		hopeless = add_pulses(j, &pursuit);
 		joint_fit_all(j);
-	} while (joint_split_pulses(j));
+	} while (!hopeless && joint_split_pulses(j));
 	full = s->give_up && are_more(j);
 	if (!full) {
 		joint_swap_pulses(j);
