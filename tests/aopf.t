@@ -367,9 +367,9 @@ mixed 2 >mixed.tsv
 # and of two in random order
 awk 'BEGIN { srand(4); print "t\ty"; for (t = 0; t < 100; t++)
 	print t "\t" t / 200 * (1 + (rand() < 0.4)) + 0.02 * (rand() - 0.5) }' >random.tsv
-fails "two machines in one series" 3 "the values lie on two courses by turns: those of two machines" \
+fails "two machines in one series" 3 "the values alternate between two courses: those of two machines" \
 	aopf -y 1 --lives-only mixed.tsv
-fails "two machines in random order" 3 "lie on two courses by turns" aopf -y 1 --lives-only random.tsv
+fails "two machines in random order" 3 "alternate between two courses" aopf -y 1 --lives-only random.tsv
 ok "one machine" sh -c "aopf -y 1 --lives-only 2>err >out <<-END && ! grep . err
 $(mixed 1)
 END"

@@ -236,7 +236,7 @@ fails "a pressure that contradicts the table" 2 'steps.tsv:21Pa: the nominal pre
 	rwl $new --wear steps.tsv:21Pa --step-time 1h
 fails "an area that contradicts the table" 2 'fragments of 6.25e-10 m2, not of 1e-08 m2' \
 	rwl $new --wear steps.tsv --fragment-area 1e-8m2 --step-time 1h
-fails "a speed without a distance" 2 'tell no .# step_distance' rwl $new --wear even.tsv --speed 1m/s
+fails "a speed without a distance" 2 'do not state .# step_distance' rwl $new --wear even.tsv --speed 1m/s
 fails "two step times" 2 'exclude one another' rwl $new --wear steps.tsv --speed 1m/s --step-time 1h
 fails "several pressures in one table" 1 'nominal pressures of 2.1e+07 and of 1e+06 Pa in one table' sh -c \
 	"bemcontact --pressure 1MPa --young 210GPa contact.nrrd | debrisgen --yield 355MPa --friction 0.3 --steps 3 \
@@ -434,7 +434,7 @@ awk '/^[0-9]/ { $2 = 3e-5 - $2 } 1' OFS="\t" one.tsv >closing.tsv
 fails "a ceiling with noise behind it" 3 "the gap has ceased to grow" rwl --threshold-gap 25um --state-error 1e-7 dither.tsv
 for how in mean filter; do
 	fails "a gap that closes, $how" 3 "the gap closes: no life ends" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how closing.tsv
-	fails "two pairs in one state, $how" 3 "the values lie on two courses by turns" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
+	fails "two pairs in one state, $how" 3 "the values alternate between two courses" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
 	fails "a sensor at its ceiling, $how" 3 "the last values are equal: the sensor sticks" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how ceiling.tsv
 	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv
 done

@@ -11,9 +11,10 @@
 #include <stddef.h>
 
 enum {
-	EXIT_RUN = 1,   /* the run failed: bad input, no memory, disk full */
-	EXIT_USAGE = 2, /* the command line is wrong */
-	EXIT_NOCONV = 3 /* did not converge; the best result was written */
+	EXIT_RUN = 1,    /* the run failed: bad input, no memory, disk full */
+	EXIT_USAGE = 2,  /* the command line is wrong */
+	EXIT_NOCONV = 3, /* did not converge; the best result was written */
+	EXIT_ALARM = 4   /* an alarm is active after the last rows */
 };
 
 /* Level of -v: 0 silent, 1 a line per record, 2 more. */

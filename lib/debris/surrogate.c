@@ -2,6 +2,7 @@
 #include "num/deviates.h"
 #include "num/lanes.h"
 #include "num/lesser.h"
+#include "num/select.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,19 +35,12 @@ static void find_range(const struct surrogate_sample *sample, const char *held, 
 
 /* ---- intervals ---- */
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* Sorts the scores and keeps as many quantiles of them as fit. */
 static void keep_scores(double *all, size_t n, struct surrogate_scores *kept)
 {
 	int most = n < SURROGATE_SCORES ? (int)n : SURROGATE_SCORES;
 
-	qsort(all, n, sizeof *all, ascending);
+	sort_numbers(all, n);
 	for (int i = 0; i < most; i++)
 		kept->score[i] = all[(size_t)(((double)i + 0.5) * (double)n / most)];
 	kept->count = most;

@@ -1,6 +1,6 @@
 /* filter_options.h - how a series is filtered: options of aopf */
-#ifndef FILTERING_H
-#define FILTERING_H
+#ifndef FILTER_OPTIONS_H
+#define FILTER_OPTIONS_H
 
 #include "cli/opt.h"
 #include "life/particle/adaptive.h"

@@ -14,10 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-	EXIT_ALARM = 4, /* an alarm is active after the last rows */
-	BLOCK = 4096    /* rows at a time with more than one thread */
-};
+enum { BLOCK = 4096 }; /* rows at a time with more than one thread */
 
 static const char *unit_column, *clock_column, *save_file, *resume_file;
 static int bare, json;

@@ -638,7 +638,7 @@ int outlook_settle(const struct outlook *o)
 		     "may have changed, or a counter has wrapped",
 			unit, *unit ? ": " : "");
 	if (alternates)
-		warn("%s%sthe values lie on two courses by turns: those of two machines are "
+		warn("%s%sthe values alternate between two courses: those of two machines are "
 		     "told apart by --unit",
 			unit, *unit ? ": " : "");
 	if (stuck)

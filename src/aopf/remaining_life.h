@@ -9,8 +9,8 @@
  *
  * Different units may step at the same time.
  */
-#ifndef OUTLOOK_H
-#define OUTLOOK_H
+#ifndef REMAINING_LIFE_H
+#define REMAINING_LIFE_H
 
 #include "cli/opt.h"
 #include "io/series.h"

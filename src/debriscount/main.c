@@ -15,8 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXIT_ALARM = 4 };
-
 static const char *const outputs[] = { "classes", "codes", "trend", NULL };
 static const char *const standards[] = { "own", "iso4406", "as4059", NULL };
 

@@ -1,7 +1,7 @@
 /* life_table.h - the table of lives left: quantiles or samples, with scores where the end
  * of life is known */
-#ifndef LIFETABLE_H
-#define LIFETABLE_H
+#ifndef LIFE_TABLE_H
+#define LIFE_TABLE_H
 
 #include "cli/opt.h"
 #include "life/pair/forecast.h"

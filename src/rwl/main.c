@@ -284,7 +284,7 @@ static struct partition *read_fragments(char **made_by)
 		return p;
 	if (isnan(distance))
 		die(EXIT_USAGE,
-			"--speed: the tables of --wear tell no '# step_distance:'; give "
+			"--speed: the tables of --wear do not state '# step_distance:'; specify "
 			"--step-time");
 	step_time = distance / speed;
 	return p;
@@ -312,7 +312,7 @@ static int check_state(
 	char *more;
 
 	if (rescaled_alternates(&s->seen))
-		status = doubt(out, "the values lie on two courses by turns",
+		status = doubt(out, "the values alternate between two courses",
 			", as those of two machines do");
 	if (bank && bank_stuck(bank))
 		status = doubt(out, "the last values are equal",

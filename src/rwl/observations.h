@@ -10,8 +10,8 @@
  * Anything that is not a state of growing time ends the program with one line that names
  * file and line.
  */
-#ifndef STATE_H
-#define STATE_H
+#ifndef OBSERVATIONS_H
+#define OBSERVATIONS_H
 
 #include "cli/opt.h"
 #include "io/tables.h"

@@ -1,7 +1,7 @@
 /* pump_options.h - options of the sliding pair of rwl: surfaces, leakage and thresholds
  */
-#ifndef PUMP_H
-#define PUMP_H
+#ifndef PUMP_OPTIONS_H
+#define PUMP_OPTIONS_H
 
 #include "cli/opt.h"
 #include "life/pair/pair.h"

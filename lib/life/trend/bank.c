@@ -107,7 +107,8 @@ double advance_of(const struct bank *b, const struct trend *tr, double step)
 	return step;
 }
 
-double wander_of(
+/* The variance that wander adds to h. */
+static double wander_of(
 	const struct bank *b, const struct trend *tr, const struct place *p, double step)
 {
 	return kinds[tr->kind].wander * step / b->gap * squared_slope(*p);

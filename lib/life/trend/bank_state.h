@@ -157,9 +157,6 @@ static inline double *priors_of(const struct bank *b, const struct trend *tr)
 
 /* The way along the present rate in a step, which is longer where the rate grows. */
 double advance_of(const struct bank *b, const struct trend *tr, double step);
-/* The variance that wander adds to h. */
-double wander_of(
-	const struct bank *b, const struct trend *tr, const struct place *p, double step);
 
 /* Number of paths of other units. */
 static inline int kin_of(const struct bank *b)
