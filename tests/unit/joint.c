@@ -384,6 +384,40 @@ static void test_quiet(struct joint *j, const struct joint_scene *plain)
 		"no pulse is put into what is quiet");
 }
 
+/* What pulses cannot describe, here a rectangle of three durations, ends the search when
+ * a few have shown that it is hopeless; a record of as many pulses as are allowed does
+ * not.
+ */
+static void test_hopeless(struct joint *j, const struct joint_scene *plain)
+{
+	static double y[2][N];
+	struct joint_scene s = *plain;
+	struct joint_pulse found[20];
+	struct joint_result r;
+	int m = 0;
+
+	s.hopeless = 1;
+	memset(y, 0, sizeof y);
+	for (int i = 200; i < 500; i++)
+		y[0][i] = y[1][i] = 1000;
+	ok(joint_fit(j, &s, y[0], y[1], N, found, &m, &r) == JOINT_OK && !r.full &&
+			r.chi2 > 2 * (double)r.dof,
+		"a rectangle is not described");
+	ok(m >= 3 && m < s.max_pulses, "the search ends after %d of %d pulses", m,
+		s.max_pulses);
+	memset(y, 0, sizeof y);
+	s.max_pulses = 6;
+	for (int i = 0; i < 6; i++)
+		joint_add(&s,
+			&(struct joint_pulse){
+				.t = 100 + 90 * i, .delta = 3, .a = 10 << i },
+			1, y[0], y[1], N);
+	m = 0;
+	ok(joint_fit(j, &s, y[0], y[1], N, found, &m, &r) == JOINT_OK && m == 6 &&
+			r.chi2 < 1e-3,
+		"six pulses are found where six are allowed, the last thirty times smaller");
+}
+
 /* The probability of being a pair is right on the average: of pulses that are two in one
  * scene of two, by a gap of up to a tenth of their duration, those fitted as one are as
  * many as their probabilities add up to, beside lines as well. */
@@ -517,6 +551,7 @@ int main(void)
 	test_noisy(j, &s, 2, 2, 3);
 	test_hidden(j, &s);
 	test_quiet(j, &s);
+	test_hopeless(j, &s);
 	test_pairs(j, &s, 0);
 	test_pairs(j, &s, 12);
 	test_exchange(j, &s);

@@ -146,7 +146,7 @@ static int add_pulses(struct joint *j, struct pursuit *p)
 		}
 		p->failed = 0;
 		p->gain[p->found++ % LATEST] = before - j->result.chi2;
-		if (is_hopeless(j, p))
+		if (j->scene.hopeless && is_hopeless(j, p))
 			return 1;
 	}
 	return 0;

@@ -49,6 +49,10 @@ struct joint_scene {
 	double quiet[2];
 	int max_pulses; /* at most JOINT_PULSES_MAX */
 	int give_up;    /* 1: if there are more, the fit need not be the best */
+	/* 1: the search ends where the pulses that are still allowed cannot describe what
+	 * is left.  To compare shapes, it must not: chi-square depends on where it ends.
+	 */
+	int hopeless;
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
 	/* Prior variance of the cosine and sine of each tone about zero (small after

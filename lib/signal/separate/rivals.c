@@ -49,7 +49,8 @@ enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 	enum separate_status status = SEPARATE_OK;
 	int found = 0, most, tried;
 
-	most = (int)fmax(fmin(a->m, MOST * (double)a->n / s->cal.duration), 1);
+	most = (int)ceil(MOST * (double)a->n / s->cal.duration);
+	most = described && a->m < most ? a->m : most;
 	if (a->cut && !described && a->m > 2 * most)
 		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
