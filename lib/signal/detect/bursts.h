@@ -1,5 +1,4 @@
-/* bursts.h - whether a record exceeds its noise anywhere, whatever the shape of the signal
- */
+/* bursts.h - whether a record exceeds its noise anywhere, by a signal of any shape */
 #ifndef SIGNAL_BURSTS_H
 #define SIGNAL_BURSTS_H
 

@@ -43,8 +43,8 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 
-/* Upper limit of the sum of a^2 of the pulses in y[0 .. n), in units of its noise, for any
- * number of pulses and any other signal: the energy of the samples and three standard
+/* Upper limit of the sum of a^2 of the pulses in y[0 .. n), in units of its noise, for
+ * any number of pulses and any other signal: the energy of the samples and three standard
  * errors, divided by 1 - c.  Two pulses of one sign cancel at most the share c of their
  * energy, as far as the autocorrelation of the pulse falls below 0; that more pulses or
  * other signals cancel more is unlikely.  Below 0 if the noise is less than 1. */
