@@ -151,6 +151,8 @@ enum separate_status separate_fit_section(
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
 	s->scene.give_up = cut && !s->par.sources;
+	/* A crowd may go on beside what is not described. */
+	s->scene.hopeless = a.whole;
 	status = separate_fit_window(s, channels_at(s, a.from).at, &a);
 	s->scene.give_up = 0;
 	if (status == SEPARATE_OK && separate_is_described(&a))

@@ -125,7 +125,6 @@ static enum separate_status start(struct separate *s, size_t n)
 	s->gain_at = s->learned_at + 0.5 * (double)n;
 	s->drifts_to = s->gain_at + (double)n;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
-	s->scene.hopeless = 1;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))
 		s->par.window = s->par.window ? (size_t)(6 * reach)
