@@ -365,6 +365,12 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB -
 ok "an instrument is learned and kept" duet --instrument rig.tsv rig.au
 grep -v '^#' out >first
 ok "a kept instrument is used" duet --instrument rig.tsv --stats stats.tsv rig.au
+echo mine >common.tsv.new
+for i in 1 2 3; do duet --instrument common.tsv rig.au >common$i.tsv 2>err$i & done
+wait
+is "programs that learn one instrument at once all finish" "$(tail -qn 1 common?.tsv | grep -c '^# end') $(cat err?)" "3 "
+is "a file beside that of the instrument is left alone" "$(cat common.tsv.new; ls common.tsv.*)" "mine
+common.tsv.new"
 grep -v '^#' out >second
 same "the rows of a kept instrument are those of the learned one" first second
 is "with a kept instrument nothing is learned" "$(column_of calibrations <stats.tsv)" 0

@@ -148,3 +148,22 @@ FILE *file_create(const char *path, const char **name)
 		file_empty(f);
 	return f;
 }
+
+FILE *file_create_beside(const char *path, char **fresh)
+{
+	FILE *f;
+
+	*fresh = getenv(FILE_REPLAY) ? xstrdup("/dev/null")
+				     : xprintf("%s.%ld.new", path, (long)getpid());
+	f = fopen(*fresh, "wb");
+	if (!f)
+		die(EXIT_RUN, "%s:", *fresh);
+	return f;
+}
+
+void file_replace(char *fresh, const char *path)
+{
+	if (!getenv(FILE_REPLAY) && rename(fresh, path))
+		die(EXIT_RUN, "%s:", path);
+	free(fresh);
+}

@@ -54,6 +54,9 @@ struct table_in {
 struct table_out {
 	FILE *f;
 	const char *name;
+	const char
+		*path; /* of the file to replace by the one called fresh, NULL if none */
+	char *fresh;
 	char *head;          /* comment lines not yet written */
 	char *columns;       /* header line, NULL once written */
 	struct keys written; /* comments so far */
@@ -545,15 +548,12 @@ static int words(const char *s)
 	return n;
 }
 
-struct table_out *table_create(
-	const char *path, const char *cmd, const char *units, const char *columns)
+static void begin(
+	struct table_out *t, const char *cmd, const char *units, const char *columns)
 {
-	struct table_out *t = xcalloc(1, sizeof *t);
-
 	if (units && words(units) != words(columns))
 		die(EXIT_RUN, "%d units for %d columns: %s", words(units), words(columns),
 			columns);
-	t->f = file_create(path, &t->name);
 	t->head = xstrdup(promise);
 	if (cmd)
 		table_cmd(t, cmd);
@@ -567,6 +567,26 @@ struct table_out *table_create(
 			t->ncolumns++;
 		}
 	}
+}
+
+struct table_out *table_create(
+	const char *path, const char *cmd, const char *units, const char *columns)
+{
+	struct table_out *t = xcalloc(1, sizeof *t);
+
+	t->f = file_create(path, &t->name);
+	begin(t, cmd, units, columns);
+	return t;
+}
+
+struct table_out *table_replace(
+	const char *path, const char *cmd, const char *units, const char *columns)
+{
+	struct table_out *t = xcalloc(1, sizeof *t);
+
+	t->f = file_create_beside(path, &t->fresh);
+	t->name = t->path = path;
+	begin(t, cmd, units, columns);
 	return t;
 }
 
@@ -708,6 +728,8 @@ void table_done(struct table_out *t)
 	table_flush(t);
 	if (ferror(t->f) || (t->f != stdout && fclose(t->f)))
 		die(EXIT_RUN, "%s:", t->name);
+	if (t->path)
+		file_replace(t->fresh, t->path);
 	free(t->head);
 	keys_free(&t->written);
 	free(t->row);

@@ -65,6 +65,10 @@ void table_close(struct table_in *t);
  * plain numbers and text.  cmd may be NULL, and units where they follow as a comment. */
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns);
+/* The same for a file that keeps its contents until table_done() has written all of the
+ * table, beside it. */
+struct table_out *table_replace(
+	const char *path, const char *cmd, const char *units, const char *columns);
 /* One more "# key: value" line, unless the key has this value already; before the first
  * row it is written above the header. */
 void table_comment(struct table_out *t, const char *key, const char *format, ...)

@@ -5,7 +5,6 @@
 #include "filter_options.h"
 #include "num/checksum.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -32,7 +31,7 @@ struct units {
 	struct machine **unit;
 	int n;
 	int *of_input, n_input; /* unit of each number in the input */
-	int file;               /* -1: nothing is kept */
+	FILE *file;             /* NULL: nothing is kept */
 	const char *path;
 	size_t size; /* of the state of a unit */
 	unsigned char *place;
@@ -58,7 +57,6 @@ struct units *units_new(int bare)
 	struct units *units = xcalloc(1, sizeof *units);
 
 	units->bare = bare;
-	units->file = -1;
 	return units;
 }
 
@@ -97,7 +95,7 @@ void units_free(struct units *units)
 			outlook_count(u->outlook);
 		free_unit(u);
 	}
-	if (units->file >= 0 && close(units->file))
+	if (units->file && fclose(units->file))
 		die(EXIT_RUN, "%s:", units->path);
 	free(units->unit);
 	free(units->of_input);
@@ -330,7 +328,7 @@ static void write_at(struct units *units, const void *bytes, size_t n, off_t at)
 	const unsigned char *p = bytes;
 
 	while (n > 0) {
-		ssize_t done = pwrite(units->file, p, n, at);
+		ssize_t done = pwrite(fileno(units->file), p, n, at);
 
 		if (done < 0 && errno == EINTR)
 			continue;
@@ -345,7 +343,7 @@ static void write_at(struct units *units, const void *bytes, size_t n, off_t at)
 void units_keep(struct units *units, const char *path, const char *options)
 {
 	struct head h = head_of(units, options);
-	char *fresh = xprintf("%s.new", path);
+	char *fresh;
 	const char *name;
 
 	fclose(file_reserve(path, &name)); /* no file that is read */
@@ -353,15 +351,11 @@ void units_keep(struct units *units, const char *path, const char *options)
 	units->path = path;
 	/* Written beside the state to resume from, which is replaced once this one is
 	 * complete. */
-	units->file = open(fresh, O_RDWR | O_CREAT | O_TRUNC, 0666);
-	if (units->file < 0)
-		die(EXIT_RUN, "%s:", fresh);
+	units->file = file_create_beside(path, &fresh);
 	write_at(units, &h, sizeof h, 0);
 	for (int i = 0; i < units->n; i++)
 		unit_save(units, units->unit[i]);
-	if (rename(fresh, path))
-		die(EXIT_RUN, "%s:", path);
-	free(fresh);
+	file_replace(fresh, path);
 }
 
 void unit_save(struct units *units, struct machine *u)
@@ -373,7 +367,7 @@ void unit_save(struct units *units, struct machine *u)
 		.clock = u->clock };
 	struct state s = { .at = units->place + sizeof p };
 
-	if (units->file < 0)
+	if (!units->file)
 		return;
 	if (strlen(u->name) >= NAME)
 		die(EXIT_RUN, "%s: a name of %d characters or more cannot be saved",

@@ -65,12 +65,11 @@ void instrument_write(const struct instrument_place *place, const struct instrum
 {
 	struct instrument_value *v;
 	size_t n;
-	char *fresh = xprintf("%s.new", place->path);
 	struct table_out *t;
 
 	if (instrument_values(in, &v, &n) != NUM_OK)
 		die(EXIT_RUN, "no memory");
-	t = table_create(fresh, NULL, "1 1 1", "name index value");
+	t = table_replace(place->path, NULL, "1 1 1", "name index value");
 	table_comment(t, "instrument", "%s", version);
 	table_comment(t, "rate", "%.17g", place->rate);
 	table_comment(t, "spacing", "%.17g", place->spacing);
@@ -83,9 +82,6 @@ void instrument_write(const struct instrument_place *place, const struct instrum
 		table_put_row(t, cell, 2);
 	}
 	table_done(t);
-	if (!getenv(FILE_REPLAY) && rename(fresh, place->path))
-		die(EXIT_RUN, "%s:", place->path);
-	free(fresh);
 	free(v);
 }
 
