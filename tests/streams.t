@@ -128,6 +128,7 @@ refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
 is "heights in micrometres are converted" "$(records um.nrrd | column max /dev/stdin) $(records named.nrrd | column unit /dev/stdin)" \
 	"$(records plain.nrrd | column max /dev/stdin | awk '{ print $1 * 1e-6 }') m"
 refuse 'heights that are no lengths' "height is in 'V', want m" 'fields:=height V'
+refuse 'a unit for one axis of two' 'want a unit for each of 2 axes, got 1' 'units: "um"'
 refuse 'a unit that is no length' "unit 's' of axis 0 is not a length" 'units: "s" "s"'
 refuse 'more names than fields' 'want the names of 1 fields' 'fields:=height m, pressure Pa'
 { cat plain.nrrd; header 'fields:=gap m'; ramp; } >gap.nrrd

@@ -277,6 +277,15 @@ fails "positions above and beside the heights" 1 'first row and column are equal
 	surfimport --pixel 1um --height-unit 1um frame.txt
 awk 'BEGIN { for (i = 0; i < 5; i++) print i, i + 1, i + 2, i + 3, i + 4 }' >plane.txt
 ok "a tilted plane has no positions" surfimport --pixel 1um --height-unit 1um plane.txt
+awk 'BEGIN { for (i = 0; i < 9; i++) print i / 4, i * i % 5, i * i % 7, i * i % 3 }' >beside.txt
+fails "positions beside the heights alone" 1 'first column is equally spaced' \
+	surfimport --pixel 1um --height-unit 1um beside.txt
+awk 'BEGIN { for (j = 0; j < 4; j++) for (i = 0; i < 9; i++)
+	printf "%s%s", j ? i * i % (9 - j) : i / 4, i < 8 ? " " : "\n" }' >above.txt
+fails "positions above the heights alone" 1 'first row is equally spaced' \
+	surfimport --pixel 1um --height-unit 1um above.txt
+tail -n 4 beside.txt >few.txt
+ok "few equally spaced heights are no positions" surfimport --pixel 1um --height-unit 1um few.txt
 sort -r -n places.txt >back.txt
 surfimport --profile --height-unit 1um places.txt >b.nrrd
 surfimport --profile --height-unit 1um back.txt >c.nrrd

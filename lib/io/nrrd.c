@@ -267,6 +267,9 @@ static void check_header(const struct place *at, struct header *h)
 	if (h->nsizes != h->dimension || h->nspacings != h->dimension)
 		die(EXIT_RUN, "%s: record %ld: want %d sizes and spacings, got %d and %d",
 			at->name, at->record, h->dimension, h->nsizes, h->nspacings);
+	if (h->nunits && h->nunits != h->dimension)
+		die(EXIT_RUN, "%s: record %ld: want a unit for each of %d axes, got %d",
+			at->name, at->record, h->dimension, h->nunits);
 	if (h->dimension > 2 && h->nkinds && !h->list_first)
 		die(EXIT_RUN, "%s: record %ld: want kinds 'list domain domain'", at->name,
 			at->record);

@@ -340,18 +340,32 @@ static int is_ramp(const double *x, long n, long stride)
 	return n > 3 && step != 0;
 }
 
-/* Positions above and beside the heights, unless these form a plane. */
-static void refuse_frame(const struct text *t)
+/* 1 if the first of the lines of n samples is equally spaced and the second one is not.
+ * The corner, which may hold anything, is left out. */
+static int is_edge(const double *z, long n, long along, long across)
 {
-	const double *z = t->value;
+	return is_ramp(z + along, n - 1, along) &&
+	       !is_ramp(z + along + across, n - 1, along);
+}
 
-	if (t->rows > 4 && t->columns > 4 && is_ramp(z + 1, t->columns - 1, 1) &&
-		is_ramp(z + t->columns, t->rows - 1, t->columns) &&
-		!is_ramp(z + t->columns + 1, t->columns - 1, 1))
+/* Positions above or beside the heights.  Few heights may be equally spaced by chance: up
+ * to eight of them are positions only if those of the other edge are. */
+static void refuse_positions(const struct text *t)
+{
+	int above, beside;
+
+	if (t->rows < 2 || t->columns < 2)
+		return;
+	above = is_edge(t->value, t->columns, 1, t->columns);
+	beside = is_edge(t->value, t->rows, t->columns, 1);
+	if ((above && beside) || (above && t->columns > 8) || (beside && t->rows > 8))
 		die(EXIT_RUN,
-			"%s: the first row and column are equally spaced: want heights "
-			"alone, without positions",
-			t->c->name);
+			"%s: the first %s equally spaced: want heights alone, without "
+			"positions",
+			t->c->name,
+			above && beside ? "row and column are"
+			: above         ? "row is"
+					: "column is");
 }
 
 void text_read(const struct content *c, const struct told *told, struct record *r)
@@ -367,7 +381,7 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		profile_read(&t, told, r);
 	} else {
 		refuse_points(&t);
-		refuse_frame(&t);
+		refuse_positions(&t);
 		settle_pixel(c, told, &dx, &dy);
 		unit = settle_unit(c, told, NAN);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);
