@@ -439,5 +439,12 @@ for how in mean filter; do
 	ok "neither, $how" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how one.tsv
 done
 printf 'unit\tt\tleakage\na\t0\t3e-5\nb\t1\t3e-5\n' >units.tsv
+printf 't\tleakage\n0\t1.5\n200\t1.73\n400\t1.94\n600\t2.15\n' >litres.tsv
+rwl --wear-rate filter litres.tsv >out 2>err
+is "a state that seems to be in another unit is doubtful" \
+	"$? $(grep -c '1.5 m3/s: is another unit meant' err) $(grep '^# doubtful' out)" "3 1 # doubtful: the unit of the state"
+printf '# units: s m3\nt\tvolume\n0\t0\n1\t1e-12\n2\t2e-12\n3\t3e-12\n# doubtful: pulses differ\n' >own.tsv
+fails "the volume of doubtful particles" 3 'own.tsv: doubtful by its own account: pulses differ' \
+	rwl --wear-rate filter --threshold-volume 1e-9m3 own.tsv
 fails "the state of two units" 1 "units.tsv: line 3: unit 'b' after 'a': want rows of one unit" rwl units.tsv
 done_testing

@@ -100,4 +100,10 @@ same 'the recorded pipeline reproduces the table' volume again
 printf 't\tdiameter\n1\t60e-6\n# doubtful: pulses differ\n' >self.tsv
 wear-volume self.tsv >out 2>err
 is 'a table that calls itself doubtful is marked by status 3' "$? $(grep -c 'own account: pulses differ' err)" '3 1'
+wear-volume self.tsv 2>err | tee volume | aopf --threshold 1e-10 >lives 2>err
+is 'the life from a doubtful table is doubtful' "$? $(grep -c '^# doubtful: pulses differ' volume lives | tr '\n' ' ')" '3 volume:1 lives:1 '
+printf 't\tdiameter\n1\tnan\n2\t60e-6\n' | wear-volume >out 2>err
+is 'a volume without particles of unknown size says so' "$? $(grep '^# doubtful' out)" '3 # doubtful: rows without a diameter'
+printf 't\tdiameter\tunit\n1\t60e-6\ta\n2\t60e-6\tb\n' >units.tsv
+fails 'particles of two units' 1 "line 3: unit 'b' after 'a': want rows of one unit" wear-volume units.tsv
 done_testing

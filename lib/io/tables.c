@@ -522,6 +522,15 @@ void table_one_unit(struct table_in *t)
 			t->name, t->number, t->cell[column], t->unit);
 }
 
+const char *table_doubted(const struct table_in *t)
+{
+	const char *why = table_key(t, "doubtful");
+
+	if (why)
+		warn("%s: doubtful by its own account: %s", table_name(t), why);
+	return why;
+}
+
 void table_close(struct table_in *t)
 {
 	input_close(t->in);

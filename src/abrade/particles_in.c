@@ -153,7 +153,7 @@ struct source *particles_read(const char *path)
 	qsort(s->row, s->rows, sizeof *s->row, in_order);
 	if (cr >= 0)
 		check_parts(s, table_name(t));
-	s->doubted = verdict_doubted(t);
+	s->doubted = table_doubted(t) != NULL;
 	table_close(t);
 	s->diameter = xcalloc(s->rows + 1, sizeof *s->diameter);
 	s->aspect = xcalloc(s->rows + 1, sizeof *s->aspect);

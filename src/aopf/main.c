@@ -298,6 +298,7 @@ int main(int argc, char **argv)
 	struct pool *pool = NULL;
 	struct series *in;
 	struct sink out;
+	const char *why;
 	char *options, *in_units;
 
 	outlook_check(bare);
@@ -318,10 +319,15 @@ int main(int argc, char **argv)
 	read_rows(in, units, pool, &out);
 	alarm = units_alarm(units);
 	doubtful = units_report(units);
+	why = table_doubted(series_table(in));
+	if (why && out.table)
+		table_comment(out.table, "doubtful", "%s", why);
 	units_free(units);
 	pool_free(pool);
 	outlook_close();
 	close_sink(&out);
 	series_close(in);
-	return shell_done(alarm > 0 ? EXIT_ALARM : doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(alarm > 0         ? EXIT_ALARM
+			  : doubtful || why ? EXIT_NOCONV
+					    : EXIT_SUCCESS);
 }

@@ -167,7 +167,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	p->signs[sign < 0]++;
 	compare(p, before, table_name(t));
-	p->doubted |= verdict_doubted(t);
+	p->doubted |= table_doubted(t) != NULL;
 	table_close(t);
 	free(path);
 }

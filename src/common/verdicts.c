@@ -64,15 +64,6 @@ enum verdict verdict_of(const struct table_in *t, int column)
 	return doubtful_too ? VERDICT_SURE : VERDICT_DOUBTFUL;
 }
 
-int verdict_doubted(const struct table_in *t)
-{
-	const char *why = table_key(t, "doubtful");
-
-	if (why)
-		warn("%s: doubtful by its own account: %s", table_name(t), why);
-	return why != NULL;
-}
-
 void verdict_report(void)
 {
 	stats_add("rows_doubtful", doubtful);

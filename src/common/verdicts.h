@@ -20,9 +20,6 @@ enum verdict {
 int verdict_column(struct table_in *t);
 /* Of the present row; counts what is doubtful.  column may be -1. */
 enum verdict verdict_of(const struct table_in *t, int column);
-/* At the end of a table: whether a comment "# doubtful: why" says that its rows are not
- * to be relied on, with a warning. */
-int verdict_doubted(const struct table_in *t);
 /* Says how many rows have been left out since the last report, and adds them to the
  * counters. */
 void verdict_report(void);

@@ -310,7 +310,7 @@ int main(int argc, char **argv)
 		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&
 		verdict_equivalent())
 		groups_doubtful(groups);
-	if (verdict_doubted(t))
+	if (table_doubted(t))
 		groups_doubtful(groups);
 	table_close(t);
 	status = groups_alarm(groups) ? EXIT_ALARM : groups_status(groups);

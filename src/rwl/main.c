@@ -343,8 +343,8 @@ static int check_state(
 	return status;
 }
 
-/* Says so if the particles read are doubtful; its status. */
-static int check_particles(struct lifetable *out)
+/* Says so if the state is doubtful; its status. */
+static int pass_doubt(struct lifetable *out)
 {
 	if (!state_doubt())
 		return 0;
@@ -395,7 +395,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_state(&s, f, out) | check_particles(out);
+	status |= check_state(&s, f, out) | pass_doubt(out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

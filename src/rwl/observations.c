@@ -22,7 +22,7 @@ static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
 static int debris;      /* 1: a table of particles has been opened */
-static const char *why; /* its particles are doubtful */
+static const char *why; /* it is doubtful */
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
@@ -150,11 +150,11 @@ int state_next(struct observations *s)
 				table_name(t), s->passed);
 		if (s->quantity == PAIR_DEBRIS) {
 			verdict_report();
-			if (verdict_doubted(t))
-				why = "the table of particles says so of itself";
 			if (verdict_equivalent())
 				why = "the diameters of particles that are not ferrous";
 		}
+		if (table_doubted(t))
+			why = "the table of the state says so of itself";
 		check_lowest(s);
 		return 0;
 	}
@@ -177,10 +177,12 @@ int state_next(struct observations *s)
 			table_line(t), value, quantities[s->quantity]);
 	if (s->quantity == PAIR_VOLUME && !isnan(value))
 		heed_volume(s, value, time - s->t);
-	if (value > most[s->quantity] && !s->beyond++)
+	if (value > most[s->quantity] && !s->beyond++) {
+		why = "the unit of the state";
 		warn("%s: line %ld: a %s of %g %s: is another unit meant? --state-unit names it",
 			table_name(t), table_line(t), quantities[s->quantity], value,
 			unit_name(units[s->quantity]));
+	}
 	if (s->quantity != PAIR_DEBRIS && !isnan(value) &&
 		(factor = rescaled_add(&s->seen, value)) != 0)
 		die(EXIT_RUN,

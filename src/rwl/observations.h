@@ -58,7 +58,7 @@ int state_next(struct observations *s);
 
 /* Dies if an option of particles was given and no table of them has been opened. */
 void state_check(void);
-/* Why the particles read so far are doubtful; NULL: they are not. */
+/* Why the state is doubtful; NULL: it is not. */
 const char *state_doubt(void);
 
 /* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */

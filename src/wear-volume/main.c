@@ -109,6 +109,7 @@ static long sum_rows(struct table_in *t, struct table_out *out)
 
 		if (v == VERDICT_FOREIGN)
 			continue;
+		table_one_unit(t);
 		time = time_of(t, c.time, before);
 		if (part < 0)
 			part = table_part(t);
@@ -141,18 +142,25 @@ int main(int argc, char **argv)
 	const char *start = table_key(t, "start");
 	struct table_out *out;
 	char *cmd;
-	int doubtful;
+	const char *why = NULL, *own;
 
 	find_columns(t);
 	cmd = opt_cmd(table_upstream(t), NULL);
 	out = table_create(NULL, cmd, "s m3", "t y");
 	if (start)
 		table_comment(out, "start", "%s", start);
-	doubtful = sum_rows(t, out) > 0;
+	if (sum_rows(t, out) > 0)
+		why = "rows without a diameter";
 	verdict_report();
-	doubtful |= verdict_equivalent() | verdict_doubted(t);
+	if (verdict_equivalent())
+		why = "the diameters of particles that are not ferrous";
+	own = table_doubted(t);
+	if (own)
+		why = own;
+	if (why)
+		table_comment(out, "doubtful", "%s", why);
 	table_close(t);
 	table_done(out);
 	free(cmd);
-	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(why ? EXIT_NOCONV : EXIT_SUCCESS);
 }
