@@ -360,7 +360,7 @@ static void check_time(struct text_in *t, double time)
 	if (t->time >= 0 && fabs(time - want) > 0.5 * t->step + t->rounding)
 		die(EXIT_RUN,
 			"%s: line %ld: time %.9g s, want %.9g s: samples are missing or "
-			"the rate is not %.9g Hz: --rate tells it",
+			"the rate is not %.9g Hz: set it by --rate",
 			t->name, t->number, time, want, t->format.rate);
 	t->rows++;
 }
