@@ -5,6 +5,7 @@
 #include "count/line.h"
 #include "num/philox.h"
 #include "tap.h"
+#include <stdlib.h>
 
 static uint64_t drawn;
 
