@@ -36,7 +36,7 @@ def _open():
 
 
 _lib = _open()
-_OK, _NOT_CONVERGED = 0, 4
+_OK, _NOT_CONVERGED, _CUT_OFF = 0, 4, 6
 _array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
 
 
@@ -161,12 +161,14 @@ _debris_new = _function("wp_debris_new", c_void_p, POINTER(_DebrisPar), POINTER(
 _debris_free = _function("wp_debris_free", None, c_void_p)
 _debris_wear = _function("wp_debris_wear", c_int, c_void_p, _array, _array,
                          POINTER(POINTER(c_double)), POINTER(c_size_t))
+_debris_beyond = _function("wp_debris_beyond", c_double, c_void_p)
 
 
 def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, cell=0.0,
          periodic=False, potential=False, threads=1):
     """One step of wear.  Returns the worn heights and the particles as a structured array
-    with the fields cells, volume, diameter, length, width, solidity, x, y, z (SI)."""
+    with the fields cells, volume, diameter, length, width, solidity, x, y, z (SI).  Warns
+    where the border of a free grid cuts off a considerable part of them."""
     worn, pressure = _field(heights).copy(), _field(pressure)
     if worn.shape != pressure.shape:
         raise ValueError("heights and pressure differ in shape")
@@ -178,12 +180,18 @@ def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, ce
     d = _made(_debris_new(byref(par), byref(status)), status)
     try:
         rows, count = POINTER(c_double)(), c_size_t()
-        _check(_debris_wear(d, worn, pressure, byref(rows), byref(count)))
+        status = _debris_wear(d, worn, pressure, byref(rows), byref(count))
+        _check(status, (_OK, _CUT_OFF))
         kind = np.dtype([(name, np.float64) for name in _PARTICLE])
         if not count.value:
             return worn, np.empty(0, kind)
         flat = np.ctypeslib.as_array(rows, (count.value * len(_PARTICLE),))
-        return worn, flat.copy().view(kind)
+        particles = flat.copy().view(kind)
+        if status == _CUT_OFF:
+            warnings.warn("particles are cut off at the border of the grid, where up to %.0f %% more "
+                          "volume is lost: use a larger grid, or periodic=True" %
+                          (100 * _debris_beyond(d) / particles["volume"].sum()), stacklevel=2)
+        return worn, particles
     finally:
         _debris_free(d)
 

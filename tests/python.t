@@ -54,6 +54,13 @@ same = [np.array_equal(found[name], [float(row[k]) for row in table[1:]], equal_
         for k, name in enumerate(table[0]) if name not in ("particle", "verdict")]
 print("separation", len(found) == len(table) - 1 > 0, all(same), list(found["verdict"]) == [row[table[0].index("verdict")] for row in table[1:]])
 import warnings
+for name, row in ("inside", 14), ("border", 29):
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        square = np.zeros((32, 32)); square[row:row + 3, 14:17] = 2e9
+        wearpipe.wear(np.zeros((32, 32)), square, dx, 355e6)
+        np.stack([np.zeros((32, 32)), square], 2).tofile(name + ".raw")
+        print(name, *[str(w.message) for w in said])
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     noise = wearpipe.separate(np.random.default_rng(1).normal(size=(8192, 2)), 10e3)
@@ -86,6 +93,15 @@ worn=$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.9g", s }')
 is 'the particles are those of debrisgen and have the volume that the surface lost' "$(got volume)" "$worn $worn"
 is 'the von Mises stress is that of debrisgen --stress, and that of the tensor' \
 	"$(got stress | awk '{ print ($1 < 1e-9 && $2 < 1e-12) }')" 1
+for name in inside border; do
+	records --output nrrd --raw 32x32 --pixel 31.25um --fields "height m,pressure Pa" $name.raw |
+		debrisgen -Y 355MPa >table 2>err
+	echo "$name $?" >>ends
+	is "the bound of the volume beyond the border is that of debrisgen, square $name" \
+		"$(grep "^$name" got | grep -o '[0-9]* % more')" "$(grep -o '[0-9]* % more' err)"
+done
+is 'a square inside ends without a warning and one at the border with one, as in debrisgen' \
+	"$(grep -c '^inside$' got) $(grep -c '^border particles are cut off' got) $(tr '\n' ' ' <ends)" '1 1 inside 0 border 3 '
 is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
 is 'the particles in a record are those of duet to the last bit' "$(got separation)" 'True True True'
 is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['channels with nothing in common: no pa']"

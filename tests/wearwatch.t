@@ -86,6 +86,20 @@ like 'the page shows the alarm' "$(cat clipped/index.html)" 'Alarm: particles pe
 like 'the page renews itself' "$(cat clipped/index.html)" 'http-equiv="refresh"'
 is 'the page has no external link' "$(grep -cE '(src|href)="?[a-z]*:' clipped/index.html)" 0
 
+# The header of a recorder that announced six hours and wrote two, in a file and in a stream that continues one of six
+plain() {
+	{ printf '.snd\0\0\0\030\0\016\246\0\0\0\0\007\0\0\047\020\0\0\0\002' && tail -c +$((skip + 1)) hours.au; } |
+		head -c $((24 + 16 * $1))
+}
+plain 20000 >torn.au
+watch --state torn torn.au 2>said
+is 'a file that is shorter than its header declares is doubted' \
+	"$? $(grep -c 'torn.au: cut off: want 60000 frames, got 20000' said)" '3 1'
+plain 60000 | watch --state joined 2>said
+is 'a stream as long as its header declares is whole' "$? $(cat said)" '0 '
+plain 20000 | watch --state joined 2>said
+is 'a stream that continues another is doubted by its own length' \
+	"$? $(grep -c 'standard input: cut off: want 60000 frames, got 20000' said)" '3 1'
 fails 'other options for the same state' 1 'made with other options' \
 	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au
 sensorsim --duration 6s --noise 10mV --seed 2 particles.tsv >other.au
@@ -97,5 +111,10 @@ fails 'no state' 2 'want --state' wearwatch hours.au
 fails 'a time without a number' 2 'want a time above 0' wearwatch --state other --chunk x hours.au
 fails 'an overlap as long as a chunk' 2 'less than a chunk' wearwatch --state other --chunk 1s --overlap 1s hours.au
 fails 'alarms of a life without an end' 2 'requires --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
+fails 'an alarm that clears above its level' 2 'CLEAR not above LEVEL' wearwatch --state other --alarm-rate 7:8 hours.au
+fails 'alarms of a life that ascend' 2 'must be descending' \
+	wearwatch --state other --threshold-volume 2e-10 --alarm-life 1h,3h hours.au
+fails 'classes that descend' 2 'is not above' wearwatch --state other --classes 100um,50um hours.au
+fails 'an option that duet has not' 2 'no such option' wearwatch --state other --duet '--colour 3' hours.au
 fails 'an unknown option' 2 'no such option' wearwatch --colour
 done_testing

@@ -53,9 +53,14 @@ WP_API struct wp_debris *wp_debris_new(
 WP_API void wp_debris_free(struct wp_debris *d);
 
 /* Lowers height (m) where material is removed under the pressure (Pa, >= 0).  *particle
- * is valid until the next call; largest first. */
+ * is valid until the next call; largest first.  WP_CUT_OFF, with height and particles as
+ * for WP_OK, where wp_debris_beyond() is above 5 % of the volume of the particles. */
 WP_API enum wp_status wp_debris_wear(struct wp_debris *d, double *height,
 	const double *pressure, const struct wp_particle **particle, size_t *count);
+
+/* Bound of the volume that the last call would have removed beyond the border of the
+ * grid, m3; 0 if periodic. */
+WP_API double wp_debris_beyond(const struct wp_debris *d);
 
 #ifdef __cplusplus
 }

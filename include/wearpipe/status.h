@@ -25,8 +25,10 @@ enum wp_status {
 	WP_DOMAIN,        /* a parameter is out of its range */
 	WP_NUMBERS,       /* input that is not finite, or a result beyond doubles */
 	WP_NOT_CONVERGED, /* a result was written but misses the tolerance */
-	WP_IMPOSSIBLE     /* no solution: load above the hardness, heights or depths that
+	WP_IMPOSSIBLE,    /* no solution: load above the hardness, heights or depths that
 			   * the grid cannot carry */
+	WP_CUT_OFF        /* a result was written, but the border of the grid cuts off a
+			   * considerable part of it */
 };
 
 /* A phrase for a message, in static memory. */

@@ -98,23 +98,34 @@ double line_lack_of_fit(const double *x, const double *y, size_t n, const struct
 		groups - 2, (double)n - groups);
 }
 
-double line_outlier_p(const double *y, size_t n, size_t *farthest)
+struct line_outliers line_outliers(const double *y, size_t n)
 {
-	double mean = 0, squares = 0, count = (double)n, most, t2;
+	struct line_outliers found = { 0, 0, NAN };
+	double mean = 0, squares = 0, sum[2] = { 0, 0 }, count = (double)n;
 
 	for (size_t i = 0; i < n; i++)
 		mean += y[i] / count;
-	*farthest = 0;
-	for (size_t i = 0; i < n; i++) {
+	for (size_t i = 0; i < n; i++)
 		squares += (y[i] - mean) * (y[i] - mean);
-		if (fabs(y[i] - mean) > fabs(y[*farthest] - mean))
-			*farthest = i;
-	}
 	if (n < 3 || !(squares > 0))
-		return NAN;
-	most = pow(y[*farthest] - mean, 2) * count / (squares * (count - 1));
-	t2 = (count - 2) * most / fmax(1 - most, 0);
-	return fmin(1, 2 * count * gsl_cdf_tdist_Q(sqrt(t2), count - 2));
+		return found;
+	found.p = 1;
+	for (size_t m = 1; m <= n / 2; m++) {
+		double k = (double)m, between, t, ways, p;
+		int high;
+
+		sum[0] += mean - y[m - 1];
+		sum[1] += y[n - m] - mean;
+		high = sum[1] >= sum[0];
+		between = pow(sum[high], 2) * count / (k * (count - k));
+		t = sqrt((count - 2) * between / fmax(squares - between, 0));
+		ways = lgamma(count + 1) - lgamma(k + 1) - lgamma(count - k + 1) +
+		       k * log(2);
+		p = exp(ways + log(2 * gsl_cdf_tdist_Q(t, count - 2)));
+		if (p < found.p)
+			found = (struct line_outliers){ high ? n - m : 0, m, p };
+	}
+	return found;
 }
 
 /* Of logarithms of up to 30, over sizes that differ by 1 % or more. */

@@ -41,10 +41,18 @@ void line_allow_unequal(
  * each. */
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
 
-/* Grubbs' test (Technometrics 11, 1969, page 1): the farthest of n normal numbers from
- * their mean, and the p-value of the hypothesis that it is one of them; NAN with fewer
- * than three numbers or equal ones. */
-double line_outlier_p(const double *y, size_t n, size_t *farthest);
+/* The lowest or highest of some numbers that are not of the others. */
+struct line_outliers {
+	size_t first, count;
+	double p; /* of the hypothesis that all are normal numbers of one mean */
+};
+
+/* Of n ascending numbers: for k = 1 .. n/2 the k lowest and the k highest are compared
+ * with the others by Student's t, times the number of ways to choose k of n and times
+ * 2^k, so that the sum over k is at most 1 (Bonferroni); the least p.  For k = 1 without
+ * the factor 2 this is the test of Grubbs (Technometrics 11, 1969, page 1), from which
+ * outliers hide one another.  p is NAN with fewer than three numbers or equal ones. */
+struct line_outliers line_outliers(const double *y, size_t n);
 
 /* p-value of the hypothesis that the true slope is want. */
 double line_slope_p(const struct line *l, double want);

@@ -9,6 +9,7 @@ struct wp_debris {
 	struct debris *debris;
 	struct wp_particle *particle;
 	size_t room;
+	double beyond;
 };
 
 struct wp_debris *wp_debris_new(const struct wp_debris_par *par, enum wp_status *status)
@@ -80,6 +81,7 @@ enum wp_status wp_debris_wear(struct wp_debris *d, double *height, const double 
 
 	*particle = NULL;
 	*count = 0;
+	d->beyond = status == WP_OK ? step.beyond : 0;
 	if (status != WP_OK)
 		return status;
 	if (step.count > d->room) {
@@ -99,5 +101,10 @@ enum wp_status wp_debris_wear(struct wp_debris *d, double *height, const double 
 	}
 	*particle = d->particle;
 	*count = step.count;
-	return WP_OK;
+	return step.beyond > DEBRIS_BEYOND * step.volume ? WP_CUT_OFF : WP_OK;
+}
+
+double wp_debris_beyond(const struct wp_debris *d)
+{
+	return d->beyond;
 }

@@ -9,6 +9,7 @@ const char *wp_status_text(enum wp_status status)
 		[WP_NUMBERS] = "numbers beyond double precision",
 		[WP_NOT_CONVERGED] = "not converged to the tolerance",
 		[WP_IMPOSSIBLE] = "no solution",
+		[WP_CUT_OFF] = "cut off at the border of the grid",
 	};
 
 	return (unsigned)status < sizeof(text) / sizeof *text ? text[status]

@@ -50,7 +50,7 @@ static const struct prog prog = { "ballcal",
 /* One pulse: logarithms of its ball's diameter and of amplitude over velocity. */
 struct pulse {
 	double diameter, response;
-	int table;
+	int table, alone; /* alone: does not overlap another */
 };
 
 struct pulses {
@@ -102,29 +102,55 @@ static double amplitude_of(const struct table_in *t, int column, double *sign)
 	return fabs(a);
 }
 
-/* The balls of one table are equal.  A pulse of another particle among theirs changes
- * the mean, and the scatter of equal pulses is unknown. */
+static int ascending(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return x < y ? -1 : x > y;
+}
+
+/* The number, from 1, of the first pulse that stands alone with a response in a range. */
+static size_t first_within(const struct pulses *p, size_t from, double low, double high)
+{
+	size_t i = from;
+
+	while (!p->pulse[i].alone || exp(p->pulse[i].response) < low ||
+		exp(p->pulse[i].response) > high)
+		i++;
+	return i - from + 1;
+}
+
+/* The balls of one table are equal.  Pulses of other particles among theirs change the
+ * mean, and the scatter of equal pulses is unknown.  Overlapping pulses scatter by errors
+ * of their own. */
 static void compare(struct pulses *p, size_t from, const char *name)
 {
-	size_t n = p->n - from, far;
-	double *a = xcalloc(n, sizeof *a), least = INFINITY, most = 0, outlier;
+	size_t n = 0;
+	double *a = xcalloc(p->n - from, sizeof *a), low, high;
+	struct line_outliers other;
 
-	for (size_t i = 0; i < n; i++) {
-		a[i] = exp(p->pulse[from + i].response);
-		least = fmin(least, a[i]);
-		most = fmax(most, a[i]);
+	for (size_t i = from; i < p->n; i++)
+		if (p->pulse[i].alone)
+			a[n++] = exp(p->pulse[i].response);
+	if (n < 3) {
+		free(a);
+		return;
 	}
-	if (n > 2 && most - least <= 1e-12 * most) { /* rounding */
+	qsort(a, n, sizeof *a, ascending);
+	if (a[n - 1] - a[0] <= 1e-12 * a[n - 1]) { /* rounding */
 		warn("%s: all %zu pulses are equal: their scatter is unknown", name, n);
 		p->equal++;
 	}
-	outlier = fmin(1, balls.n * line_outlier_p(a, n, &far));
-	if (n > 2 && outlier < UNLIKELY)
-		warn("%s: pulse %zu of %zu, of %.3g V s/m, is not of the same ball as the "
-		     "others, p = %.2g",
-			name, far + 1, n, a[far], outlier);
-	if (n > 2)
-		p->outlier_p = fmin(p->outlier_p, outlier);
+	other = line_outliers(a, n);
+	other.p = fmin(1, balls.n * other.p);
+	low = a[other.first];
+	high = a[other.first + other.count - (other.count > 0)];
+	if (other.p < UNLIKELY)
+		warn("%s: %zu of %zu pulses are not of the same ball as the others, from "
+		     "pulse %zu on, %.3g to %.3g V s/m: p = %.2g",
+			name, other.count, n, first_within(p, from, low, high), low, high,
+			other.p);
+	p->outlier_p = fmin(p->outlier_p, other.p);
 	free(a);
 }
 
@@ -149,6 +175,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		ce = table_need_quantity(t, "amplitude_se", UNIT_VOLTAGE);
 	for (; more; more = table_next(t)) {
 		double a, v;
+		int alone = cw < 0 || strcmp(table_text(t, cw), "alone") == 0;
 
 		if (verdict_of(t, cw) != VERDICT_SURE)
 			continue;
@@ -156,9 +183,10 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		v = table_positive(t, cv);
 		if (room_for(&p->pulse, &p->room, p->n + 1, sizeof *p->pulse))
 			die(EXIT_RUN, "out of memory");
-		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v), table };
+		p->pulse[p->n++] =
+			(struct pulse){ log(diameter), log(a / v), table, alone };
 		p->speed += v;
-		if (ce >= 0 && (cw < 0 || strcmp(table_text(t, cw), "alone") == 0)) {
+		if (ce >= 0 && alone) {
 			p->squares += pow(table_positive(t, ce), 2);
 			p->alone++;
 		}

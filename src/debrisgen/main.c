@@ -18,11 +18,6 @@ static const double EDGE_LOAD = 0.05;
 enum { RESERVE = 256 << 20 };
 /* From half of the load on, the contact is mostly with what the grid has cut off. */
 static const double EDGE_MOST = 0.5;
-/* Bound of the volume lost beyond the border, over that within, that is worth a warning:
- * errors of the volumes of single surfaces are smaller (debrisgen(1), Accuracy).  Of 470
- * rough surfaces none of the 243 below it lost more beyond the border
- * (tests/bench/border.sh). */
-static const double BEYOND = 0.05;
 
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
@@ -193,7 +188,7 @@ static void check_border(
 	for (int k = 0; k < 2; k++)
 		if (body[k] && body[k]->volume > 0)
 			most = fmax(most, body[k]->beyond / body[k]->volume);
-	note_edge(&run->border, most, BEYOND, c, s->number);
+	note_edge(&run->border, most, DEBRIS_BEYOND, c, s->number);
 }
 
 static void wear_step(struct run *run, const struct scene *c, long step)
