@@ -424,7 +424,7 @@ static void start(struct bank *b)
 			double *x = state_of(b, tr);
 
 			*tr = (struct trend){ .sum = FINEST * FINEST,
-				.shape = (unsigned char)i,
+				.shape = (unsigned short)i,
 				.kind = (unsigned char)k };
 			x[0] = here.h;
 			x[n] = squared_slope(here);
