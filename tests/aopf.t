@@ -285,6 +285,22 @@ awk -F '\t' 'NR == 1 || $2 < 55' one.tsv >half.tsv
 aopf --threshold 1 --direction up --fleet half.tsv --stats half.stats unit.tsv >half.out
 is "a unit that has not failed is used" "$(column fleet_units_carried_on half.stats)" 1
 ok "a unit that has not failed gives a prediction" test "$(column rul_q50 half.out | tail -1 | cut -d. -f1)" -ge 10
+# Straight wear that accelerates at half of its life of 100: earlier units that were stopped
+# before that do not tell it, and a unit that begins beyond it has not seen the way there.
+knee() {
+	awk -v life="$1" -v rows="$2" -v seed="$3" 'BEGIN { srand(seed); for (t = 0; t < rows; t++) {
+		u = t / life
+		printf "%d\t%.6f\n", t, (u < 0.5 ? u / 4 : 0.125 + 1.75 * (u - 0.5)) + 0.01 * (rand() - 0.5) } }'
+}
+weight_of() {
+	aopf --threshold 1 --direction up --lives-only --weights --fleet "$1" bent.tsv | column weight_fleet /dev/stdin | tail -1
+}
+{ printf 't\ty\n'; knee 100 45 1; } >bent.tsv
+{ printf 'unit\tt\ty\n'; for u in 2 3 4; do knee 80 30 $u | sed "s/^/u$u	/"; done; } >stopped.tsv
+{ printf 'unit\tt\ty\n'; knee 80 85 5 | awk '$2 > 0.5 { print "late\t" $0 }'; } >late.tsv
+{ printf 'unit\tt\ty\n'; knee 80 85 6 | sed 's/^/whole	/'; } >whole.tsv
+rising "a unit weighs less if it was stopped early" "$(weight_of stopped.tsv)" 0.1 "$(weight_of whole.tsv)"
+rising "a unit weighs less if it was first seen late" "$(weight_of late.tsv)" 0.1 "$(weight_of whole.tsv)"
 printf 'unit\tt\ty\na\t0\t0.1\na\t1\t0.1\n' >idle.tsv
 fails "a fleet that shows no wear" 1 "idle.tsv: none of 1 units shows any wear" \
 	aopf --threshold 1 --direction up --fleet idle.tsv unit.tsv

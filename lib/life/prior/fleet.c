@@ -167,7 +167,7 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 	for (int i = 0; i < f->units; i++) {
 		struct unit *p = &f->path[i];
 		struct bank_point *path = f->grid + (size_t)f->shapes * LEVELS;
-		int reached;
+		double seen;
 
 		if (p->rows == 0)
 			continue; /* no value */
@@ -176,18 +176,19 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 			return NUM_MEMORY;
 		if (p->n < 2)
 			continue; /* no wear: no path */
-		reached = p->point[p->n - 1].level >= end;
-		if (!reached && carry_on(f, p))
+		seen = p->point[p->n - 1].level;
+		if (seen < end && carry_on(f, p))
 			return NUM_MEMORY;
 		if (!lay_out(p, end, path))
 			continue;
 		f->shape[f->shapes++] = (struct bank_shape){ .family = BANK_OTHER,
 			.log_prior = KINSHIP,
 			.path = path,
-			.n = LEVELS };
+			.n = LEVELS,
+			.seen = seen };
 		p->shape = f->shapes;
-		*failed += reached;
-		*carried_on += !reached;
+		*failed += seen >= end;
+		*carried_on += seen < end;
 	}
 	return NUM_OK;
 }

@@ -192,18 +192,31 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
 	return 1 - news;
 }
 
-/* A path shares its prior with the others, and has less weight the farther the speed of
- * the unit along it is from 1. */
-static double log_kinship(const struct bank *b, const struct trend *tr)
+/* The share of the way to the threshold that another unit has been through; elsewhere its
+ * path is a guess.  With the whole prior, units stopped at 40 % of life as a fleet of
+ * three cover .82 of the ends of 15 measured series; so .96, which is as many as without.
+ */
+static double seen_of(const struct bank *b, const struct bank_shape *s)
 {
+	double from = damage_of(b, b->par.direction * s->path[0].level),
+	       to = damage_of(b, b->par.direction * s->seen);
+
+	return fmax(0, fmin(1, to) - fmax(0, from));
+}
+
+/* A path shares its prior with the others, has it for what has been seen of it, and has
+ * less weight the farther the speed of the unit along it is from 1. */
+static double log_prior(const struct bank *b, const struct trend *tr)
+{
+	const struct bank_shape *s = shape_of(b, tr->shape);
 	double mean[RATES], usual[LINE], away;
 
-	if (shape_of(b, tr->shape)->n == 0)
-		return 0;
+	if (s->n == 0)
+		return s->log_prior;
 	mean_loads(b, mean);
 	line_at(b, tr, mean, usual);
 	away = usual[LINE_V] - 1;
-	return -log(kin_of(b)) -
+	return s->log_prior * seen_of(b, s) - log(kin_of(b)) -
 	       0.5 * away * away /
 		       (PACE * PACE + usual[LINE_VV] * tr->sum / freedom_of(b, tr));
 }
@@ -224,9 +237,8 @@ static void weigh(struct bank *b)
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 
-		tr->weight = shape_of(b, tr->shape)->log_prior +
-			     kinds[tr->kind].log_prior + tr->offset + share * tr->score +
-			     log_kinship(b, tr);
+		tr->weight = log_prior(b, tr) + kinds[tr->kind].log_prior + tr->offset +
+			     share * tr->score;
 		if (wanders(tr) && is_bent(shape_of(b, tr->shape)))
 			tr->weight += BENT;
 		if (isfinite(tr->weight))
@@ -424,7 +436,7 @@ static void start(struct bank *b)
 			double *x = state_of(b, tr);
 
 			*tr = (struct trend){ .sum = FINEST * FINEST,
-				.shape = (unsigned char)i,
+				.shape = (unsigned short)i,
 				.kind = (unsigned char)k };
 			x[0] = here.h;
 			x[n] = squared_slope(here);

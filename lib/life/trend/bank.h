@@ -90,6 +90,7 @@ struct bank_shape {
 	double log_prior; /* of a path: of all paths together */
 	const struct bank_point *path; /* [n], both of them rising */
 	int n;                         /* 0: no path, else 2 or more */
+	double seen;                   /* level up to which it is not extrapolated */
 };
 
 /* The value of a covariate in the future: its mean so far, its last value, or value. */

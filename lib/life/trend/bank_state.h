@@ -33,7 +33,8 @@ struct trend {
 	float offset;  /* log weight of a particle when it was drawn */
 	float lagged;  /* sum of products of innovations with recent before them */
 	float recent;  /* faded sum of the last innovations */
-	unsigned char shape, kind;
+	unsigned short shape;
+	unsigned char kind;
 	unsigned char changes; /* of the regime so far, 255 at most */
 };
 
