@@ -29,7 +29,9 @@ static void read_covariate(int k)
 		name[k][colon - text] = '\0';
 		if (strcmp(colon, ":last") == 0) {
 			future[k].future = BANK_LAST;
-		} else if (strcmp(colon, ":mean") != 0) {
+		} else if (strcmp(colon, ":mean") == 0) {
+			future[k].future = BANK_MEAN;
+		} else {
 			future[k].future = BANK_VALUE;
 			future[k].value = strtod(colon + 1, &end);
 			if (end == colon + 1 || *end || !isfinite(future[k].value))

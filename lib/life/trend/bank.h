@@ -93,8 +93,9 @@ struct bank_shape {
 	double seen;                   /* level up to which it is not extrapolated */
 };
 
-/* The value of a covariate in the future: its mean so far, its last value, or value. */
-enum bank_future { BANK_MEAN, BANK_LAST, BANK_VALUE };
+/* The value of a covariate in the future: as its own past tells, see loads.c, or exactly
+ * its mean so far, its last value, or value. */
+enum bank_future { BANK_PAST, BANK_MEAN, BANK_LAST, BANK_VALUE };
 
 struct bank_covariate {
 	enum bank_future future;

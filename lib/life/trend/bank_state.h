@@ -49,6 +49,10 @@ struct load {
 	double last;         /* f at the last row */
 	double sum;          /* of f times the time, without the idle time */
 	double taken;        /* sum at the last row that was taken */
+	/* Over the time since the start, with the idle time, of f and its integral F. */
+	double whole;           /* F */
+	double squares;         /* integral of f^2 */
+	double bridge, product; /* integrals of F^2 and of F times the time */
 };
 
 struct row {
@@ -140,9 +144,11 @@ void scale_rates(int n, double *x, double times);
 
 /* --- covariates, loads.c --- */
 
-/* 1, and the mean loads so far or those assumed for the future. */
+/* 1, and the mean loads so far. */
 void mean_loads(const struct bank *b, double f[RATES]);
-void future_loads(const struct bank *b, double f[RATES]);
+/* 1, and the mean loads over the time ahead, with their variances. */
+void future_loads(
+	const struct bank *b, double ahead, double f[RATES], double variance[RATES]);
 /* Sets the loads to their means between the last row taken and this one, and the priors
  * to what is known by then. */
 void face_loads(struct bank *b, const struct row *r);

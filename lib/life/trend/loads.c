@@ -107,6 +107,18 @@ static void bend(struct load *l, double to)
 	l->bend = fmax(-most, fmin(most, to));
 }
 
+/* Extends the integrals over f, which has its last value from one time to another. */
+static void extend(struct load *l, double from, double to)
+{
+	double gap = to - from, old = l->whole, new = old + l->last * gap;
+
+	l->sum += l->last * gap;
+	l->whole = new;
+	l->squares += l->last * l->last * gap;
+	l->bridge += (old * old + old * new + new * new) * gap / 3;
+	l->product += (2 * old * from + 2 * new * to + old * to + new * from) * gap / 6;
+}
+
 void bank_load(struct bank *b, double t, const double *x)
 {
 	for (int k = 0; k < b->par.n_loads; k++) {
@@ -122,7 +134,7 @@ void bank_load(struct bank *b, double t, const double *x)
 		bend(l, l->bend);
 		l->last = effect(l, x[k]);
 		if (b->loaded)
-			l->sum += l->last * (t - b->loaded_to);
+			extend(l, b->loaded_to - b->loaded_from, t - b->loaded_from);
 	}
 	if (!b->loaded)
 		b->loaded_from = t;
@@ -139,15 +151,46 @@ void mean_loads(const struct bank *b, double f[RATES])
 		f[1 + k] = span > 0 ? b->load[k].sum / span : 0;
 }
 
-void future_loads(const struct bank *b, double f[RATES])
+/* The future of a covariate is an Ornstein-Uhlenbeck process about its mean so far.
+ * If its integral less the mean is a Brownian bridge over the age T, of variance q per
+ * unit of time, the integral of its square is q T^2 / 6; with the variance s^2 of f the
+ * correlation time is q / (2 s^2).  A load that alternates returns to its mean at once,
+ * and one that wanders keeps its last value for a while.  The mean ahead and its variance
+ * are those under the condition of the last value. */
+static void foresee(
+	const struct load *l, double age, double ahead, double *mean, double *variance)
+{
+	double past = l->whole / age, square = l->squares / age - past * past,
+	       bridge = l->bridge - 2 * past * l->product +
+			past * past * age * age * age / 3,
+	       q = 6 * fmax(0, bridge) / (age * age), time = q / (2 * square),
+	       a = ahead / time, kept, stays;
+
+	if (!(square > 1e-12 * l->squares / age) || !(a > 0))
+		return;
+	kept = -expm1(-a) / a;
+	stays = a < 1e-2 ? 2 * a / 3
+			 : 2 / a - (3 - 4 * exp(-a) + exp(-2 * a)) / (a * a);
+	*mean += kept * (l->last - *mean);
+	*variance = square * stays + (1 - kept) * (1 - kept) * q / age;
+}
+
+void future_loads(
+	const struct bank *b, double ahead, double f[RATES], double variance[RATES])
 {
 	mean_loads(b, f);
+	memset(variance, 0, RATES * sizeof *variance);
 	for (int k = 0; k < b->par.n_loads; k++) {
 		const struct bank_covariate *c = &b->par.load[k];
+		const struct load *l = &b->load[k];
 
-		if (c->future != BANK_MEAN)
-			f[1 + k] = c->future == BANK_LAST ? b->load[k].last
-							  : effect(&b->load[k], c->value);
+		if (c->future == BANK_PAST)
+			foresee(l, b->loaded_to - b->loaded_from, ahead, &f[1 + k],
+				&variance[1 + k]);
+		else if (c->future == BANK_LAST)
+			f[1 + k] = l->last;
+		else if (c->future == BANK_VALUE)
+			f[1 + k] = effect(l, c->value);
 	}
 }
 
