@@ -53,6 +53,7 @@ struct load {
 	double whole;           /* F */
 	double squares;         /* integral of f^2 */
 	double bridge, product; /* integrals of F^2 and of F times the time */
+	double pull, wander;    /* of the process that it is taken for, see learn() */
 };
 
 struct row {

@@ -110,13 +110,53 @@ static void bend(struct load *l, double to)
 /* Extends the integrals over f, which has its last value from one time to another. */
 static void extend(struct load *l, double from, double to)
 {
-	double gap = to - from, old = l->whole, new = old + l->last * gap;
+	double gap = to - from, old = l->whole, new = old + l->last *gap;
 
 	l->sum += l->last * gap;
 	l->whole = new;
 	l->squares += l->last * l->last * gap;
-	l->bridge += (old * old + old * new + new * new) * gap / 3;
-	l->product += (2 * old * from + 2 * new * to + old * to + new * from) * gap / 6;
+	l->bridge += (old * old + old * new + new *new) * gap / 3;
+	l->product += (2 * old * from + 2 * new *to + old *to + new *from) * gap / 6;
+}
+
+/* z coth z - 1 */
+static double cothing(double z)
+{
+	return z < 1e-2 ? z * z / 3 : z / tanh(z) - 1;
+}
+
+/* A covariate is taken for an Ornstein-Uhlenbeck process, df = -pull (f - mean) dt + dW,
+ * of which wander is the variance of W per unit of time.  Over the age T, with z = pull
+ * T, let s^2 be the variance of f about its mean so far, and let B be the integral of f
+ * less this mean.  In the cosines of n pi t / T, whose variances are as 1 / (z^2 + n^2
+ * pi^2), the expectations are
+ *	s^2 = wander T (z coth z - 1) / (2 z^2),
+ *	mean of B^2 over s^2 T^2 = 1 / (3 (z coth z - 1)) - 1 / z^2,
+ * which falls from 1/15 at z = 0, a random walk, to 1 / (3 z).  A load that alternates is
+ * pulled at once, and one that only rises has no pull. */
+static void learn(struct load *l, double age)
+{
+	double mean = l->whole / age, square = l->squares / age - mean * mean,
+	       bridge = l->bridge / age - 2 * mean * l->product / age +
+			mean * mean * age * age / 3,
+	       ratio, low = 0, high = 1e6;
+
+	l->pull = l->wander = 0;
+	if (!(square > 1e-12 * l->squares / age))
+		return;
+	ratio = bridge / (square * age * age);
+	for (int i = 0; i < 60; i++) {
+		double z = 0.5 * (low + high),
+		       expected = z < 1e-2 ? 1. / 15 : 1 / (3 * cothing(z)) - 1 / (z * z);
+
+		if (expected > ratio)
+			low = z;
+		else
+			high = z;
+	}
+	low = fmax(low, 1e-2);
+	l->pull = low / age;
+	l->wander = 2 * square * low * low / (age * cothing(low));
 }
 
 void bank_load(struct bank *b, double t, const double *x)
@@ -133,8 +173,10 @@ void bank_load(struct bank *b, double t, const double *x)
 		l->most = fmax(l->most, far / l->unit);
 		bend(l, l->bend);
 		l->last = effect(l, x[k]);
-		if (b->loaded)
+		if (b->loaded) {
 			extend(l, b->loaded_to - b->loaded_from, t - b->loaded_from);
+			learn(l, t - b->loaded_from);
+		}
 	}
 	if (!b->loaded)
 		b->loaded_from = t;
@@ -151,28 +193,20 @@ void mean_loads(const struct bank *b, double f[RATES])
 		f[1 + k] = span > 0 ? b->load[k].sum / span : 0;
 }
 
-/* The future of a covariate is an Ornstein-Uhlenbeck process about its mean so far.
- * If its integral less the mean is a Brownian bridge over the age T, of variance q per
- * unit of time, the integral of its square is q T^2 / 6; with the variance s^2 of f the
- * correlation time is q / (2 s^2).  A load that alternates returns to its mean at once,
- * and one that wanders keeps its last value for a while.  The mean ahead and its variance
- * are those under the condition of the last value. */
+/* The mean ahead and its variance, under the condition of the last value and of the mean
+ * so far, whose variance is the wander over pull^2 T. */
 static void foresee(
 	const struct load *l, double age, double ahead, double *mean, double *variance)
 {
-	double past = l->whole / age, square = l->squares / age - past * past,
-	       bridge = l->bridge - 2 * past * l->product +
-			past * past * age * age * age / 3,
-	       q = 6 * fmax(0, bridge) / (age * age), time = q / (2 * square),
-	       a = ahead / time, kept, stays;
+	double a = l->pull * ahead, kept, stays;
 
-	if (!(square > 1e-12 * l->squares / age) || !(a > 0))
+	if (!(l->wander > 0 && a > 0))
 		return;
 	kept = -expm1(-a) / a;
-	stays = a < 1e-2 ? 2 * a / 3
-			 : 2 / a - (3 - 4 * exp(-a) + exp(-2 * a)) / (a * a);
+	stays = a < 1e-2 ? 2 * a / 3 : 2 / a - (3 - 4 * exp(-a) + exp(-2 * a)) / (a * a);
 	*mean += kept * (l->last - *mean);
-	*variance = square * stays + (1 - kept) * (1 - kept) * q / age;
+	*variance = l->wander / l->pull *
+		    (stays / 2 + (1 - kept) * (1 - kept) / (l->pull * age));
 }
 
 void future_loads(

@@ -119,7 +119,7 @@ struct crossing {
 	double growth;            /* of the rate at present */
 	double lasts;             /* a regime of the unit, on average so far */
 	double regime;            /* age of the present one, but no more than that */
-	double stray, lean;       /* see STRAY */
+	double stray, lean;       /* see STRAY and face_future() */
 	double repairs;           /* to come, per unit of time */
 	double gain;              /* of time by each, as a share */
 	const struct future *future;
@@ -202,9 +202,9 @@ static void let_stray(struct crossing *p, double h, double past, double spread)
  * quartiles, deciles and 95 % points have the ratios 1.6, 1.5 and 1.6. */
 static const double STUDENT = 1.57;
 
-/* The line of a trend at the loads to come.  What is not known of them strays the time; as
- * the square of a bridge has the variance 1/45 where its mean is 1/6, their variance has
- * 2 / 36 * 45 = 2.5 degrees of freedom. */
+/* The line of a trend at the loads to come.  What is not known of them strays the time;
+ * as the square of a bridge has the variance 1/45 where its mean is 1/6, their variance
+ * has 2 / 36 * 45 = 2.5 degrees of freedom. */
 static void face_future(const struct bank *b, const struct trend *tr, struct crossing *p)
 {
 	double load[RATES], variance[RATES], sum = 0, ahead;
