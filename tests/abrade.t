@@ -105,6 +105,13 @@ done
 is "grooves are counted" "$(column grooves_cut st)" 3
 abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --surface h.nrrd --body 2 p.tsv >same.nrrd
 is "the body without grooves is unchanged" "$(mean same.nrrd 1)" "$(mean h.nrrd 1)"
+# c(x) = 2 c(0.6 um - x), c(x) = 10 um x - x^2: x = 402.82 nm; the mean over the lowest cell of
+# 0.1 um is higher by 0.3 nm at most
+roughgen --points 1000 --length 100um --sq 1pm --corr 10um >flat.nrrd
+printf 'diameter\n10e-6\n' |
+	abrade --gap 9.4um --hardness 2GPa --friction 0.1 --motion groove --slide 50um --surface flat.nrrd >groove.nrrd
+near "a groove that two bodies of equal hardness share has its depth over half the distance" \
+	"$(roughgen --measure groove.nrrd | column sz /dev/stdin | awk '{ print $1 * 1e9 }')" 402.82 0.4
 roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcontact --load 5N --young 210GPa |
 	debrisgen --yield 355MPa --friction 0.3 --surface w.nrrd 2>err |
 	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 0.25mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv

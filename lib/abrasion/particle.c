@@ -65,6 +65,8 @@ static void slide_on(const struct abrasion_par *par, double d, int body, double 
 	a->load += share * load;
 	for (int k = 0; k < 2; k++)
 		a->depth[k] += share * depth[k];
+	a->share[body] = share;
+	a->groove[body] = depth[body];
 	a->section[body] = share * abrasion_section(d, depth[body]);
 	if (depth[body] > d / 2)
 		a->mode = ABRASION_BURIED;

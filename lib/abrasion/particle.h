@@ -53,7 +53,10 @@ struct abrasion {
 	enum abrasion_mode mode;
 	double load;       /* N; nan if the particle yields */
 	double depth[2];   /* in either body, m; nan if the particle yields */
-	double section[2]; /* of the grooves, m2: volume per length slid; nan if not
+	double share[2];   /* of the distance slid over which it grooves either body */
+	double groove[2];  /* depth of the grooves, m; of bodies of equal hardness it
+			    * exceeds depth, the mean over the whole distance */
+	double section[2]; /* volume of the grooves per length slid, m2; nan if not
 			    * described */
 };
 
