@@ -165,6 +165,11 @@ is "grooves that are longer than the surface are reported" "$(grep -c 'in the sa
 printf 'diameter\n2.5e-5\n' >wide.tsv
 abrade --load 1mN --hardness 2GPa --friction 0.1 --inlet 1mm wide.tsv >wide.out
 near "a particle that a narrow gap rejects carries the load in a wide one" "$(cell load wide.out)" 1e-3 1e-9
+# 10 um are drawn into gaps of (10 um - 2 0.01^2 0.5 mm) / 1.0001 = 9.899 um and more only
+printf 'diameter\n1e-5\n5e-6\n' >thin.tsv
+abrade --load 2mN --hardness 2GPa --friction 0.01 --inlet 0.5mm thin.tsv >thin.out 2>err
+is "the gap is found in which a particle is admitted to a range of 1 %" \
+	"$(column load thin.out | awk '{ printf "%.6g ", $1 }')" "0.002 0 "
 
 p="--hardness 2GPa --friction 0.1"
 fails "neither gap nor load" 2 'specify either --gap H or --load F' abrade $p four.tsv
