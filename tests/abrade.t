@@ -105,6 +105,13 @@ done
 is "grooves are counted" "$(column grooves_cut st)" 3
 abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --surface h.nrrd --body 2 p.tsv >same.nrrd
 is "the body without grooves is unchanged" "$(mean same.nrrd 1)" "$(mean h.nrrd 1)"
+# c(x) = 2 c(0.6 um - x), c(x) = 10 um x - x^2: x = 402.82 nm; the mean over the lowest cell of
+# 0.1 um is higher by 0.3 nm at most
+roughgen --points 1000 --length 100um --sq 1pm --corr 10um >flat.nrrd
+printf 'diameter\n10e-6\n' |
+	abrade --gap 9.4um --hardness 2GPa --friction 0.1 --motion groove --slide 50um --surface flat.nrrd >groove.nrrd
+near "a groove that two bodies of equal hardness share has its depth over half the distance" \
+	"$(roughgen --measure groove.nrrd | column sz /dev/stdin | awk '{ print $1 * 1e9 }')" 402.82 0.4
 roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcontact --load 5N --young 210GPa |
 	debrisgen --yield 355MPa --friction 0.3 --surface w.nrrd 2>err |
 	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 0.25mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
@@ -158,6 +165,11 @@ is "grooves that are longer than the surface are reported" "$(grep -c 'in the sa
 printf 'diameter\n2.5e-5\n' >wide.tsv
 abrade --load 1mN --hardness 2GPa --friction 0.1 --inlet 1mm wide.tsv >wide.out
 near "a particle that a narrow gap rejects carries the load in a wide one" "$(cell load wide.out)" 1e-3 1e-9
+# 10 um are drawn into gaps of (10 um - 2 0.01^2 0.5 mm) / 1.0001 = 9.899 um and more only
+printf 'diameter\n1e-5\n5e-6\n' >thin.tsv
+abrade --load 2mN --hardness 2GPa --friction 0.01 --inlet 0.5mm thin.tsv >thin.out 2>err
+is "the gap is found in which a particle is admitted to a range of 1 %" \
+	"$(column load thin.out | awk '{ printf "%.6g ", $1 }')" "0.002 0 "
 
 p="--hardness 2GPa --friction 0.1"
 fails "neither gap nor load" 2 'specify either --gap H or --load F' abrade $p four.tsv

@@ -87,6 +87,8 @@ fails "no signal to noise ratio" 2 '\--snr is missing' layout --coils 0 --arriva
 fails "no rate of arrivals" 2 'specify either --arrivals F or --per-ml N' layout --coils 0 --snr 40dB
 fails "positions that do not ascend" 2 'positions must be ascending' layout --coils 1,0 --snr 40dB --arrivals 1
 fails "a position without a unit that is one" 2 'want positions in m' layout --coils 0,5s --snr 40dB --arrivals 1
+fails "a sum of more samples than can be addressed" 1 'out of memory: a pulse has 1.57' \
+	layout --coils 0,25cm --snr 30dB --arrivals 1 --method sum --flow 1e-12 --bore 1m --zone 1km --rate 2GHz
 fails "more coils than there is room for" 2 'more than 16 coils' \
 	layout --coils 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16 --snr 40dB --arrivals 1
 fails "a second layout that is wrong is found before any output" 2 "want positions" \

@@ -65,6 +65,8 @@ static void slide_on(const struct abrasion_par *par, double d, int body, double 
 	a->load += share * load;
 	for (int k = 0; k < 2; k++)
 		a->depth[k] += share * depth[k];
+	a->share[body] = share;
+	a->groove[body] = depth[body];
 	a->section[body] = share * abrasion_section(d, depth[body]);
 	if (depth[body] > d / 2)
 		a->mode = ABRASION_BURIED;
@@ -140,14 +142,15 @@ void abrasion_particle(
 		a->section[0] = a->section[1] = NAN;
 }
 
-double abrasion_widest(double (*carry)(void *, double), void *all, double largest,
-	double load, double *carried)
+double abrasion_widest(double (*carry)(void *, double), double (*admits)(void *, double),
+	void *all, double largest, double load, double *carried)
 {
 	const double step = 0.98;
-	double low, high = largest, here = 0;
+	double low = largest, high = largest, here = 0;
 
 	*carried = 0;
-	for (low = high * step; low > 1e-12 * largest; high = low, low *= step) {
+	for (; high > 1e-12 * largest; high = low) {
+		low = fmax(high * step, admits ? admits(all, high) : 0);
 		here = carry(all, low);
 		*carried = fmax(*carried, here);
 		if (here >= load)
@@ -199,6 +202,25 @@ static double carry(void *all, double gap)
 	return sum;
 }
 
+/* The widest of the gaps below high that are the narrowest to admit a particle: there its
+ * load is largest. */
+static double admits(void *all, double high)
+{
+	const struct sample *s = all;
+	double square = s->par.friction * s->par.friction, widest = 0;
+
+	if (isinf(s->par.inlet))
+		return 0;
+	for (long i = 0; i < s->n; i++) {
+		double gap = (s->diameter[i] - 2 * square * s->par.inlet) / (1 + square);
+
+		gap *= 1 + 1e-14; /* rounding */
+		if (gap < high && gap > widest)
+			widest = gap;
+	}
+	return widest;
+}
+
 double abrasion_gap(const struct abrasion_par *par, const double *diameter,
 	const double *aspect, long n, double load, double *carried, double *evaluations)
 {
@@ -207,7 +229,7 @@ double abrasion_gap(const struct abrasion_par *par, const double *diameter,
 
 	for (long i = 0; i < n; i++)
 		largest = fmax(largest, diameter[i]);
-	gap = abrasion_widest(carry, &s, largest, load, carried);
+	gap = abrasion_widest(carry, admits, &s, largest, load, carried);
 	*evaluations += s.evaluations;
 	return gap;
 }

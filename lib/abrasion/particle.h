@@ -53,7 +53,10 @@ struct abrasion {
 	enum abrasion_mode mode;
 	double load;       /* N; nan if the particle yields */
 	double depth[2];   /* in either body, m; nan if the particle yields */
-	double section[2]; /* of the grooves, m2: volume per length slid; nan if not
+	double share[2];   /* of the distance slid over which it grooves either body */
+	double groove[2];  /* depth of the grooves, m; of bodies of equal hardness it
+			    * exceeds depth, the mean over the whole distance */
+	double section[2]; /* volume of the grooves per length slid, m2; nan if not
 			    * described */
 };
 
@@ -77,12 +80,14 @@ double abrasion_largest(double friction, double radius, double gap);
 
 /* The widest gap below the largest diameter at which they carry a load: in a narrower
  * one a particle that is not drawn in or no longer rolls carries less, and an oil has
- * fewer particles.  It is bracketed from above in steps and then bisected; for 27 random
+ * fewer particles.  It is bracketed from above in steps, which end at the gaps that
+ * admits, unless NULL, names below a given one, and then bisected; for 27 random
  * oils and pairs, steps of 0.9 to 0.99 lead to the gap of steps of 0.998.  *carried is
  * the load at this gap, which differs from the given one if the load jumps there.  NAN if
  * no gap carries it; *carried is the most they carry. */
-double abrasion_widest(double (*carry)(void *all, double gap), void *all, double largest,
-	double load, double *carried);
+double abrasion_widest(double (*carry)(void *all, double gap),
+	double (*admits)(void *all, double high), void *all, double largest, double load,
+	double *carried);
 
 /* The same for n particles; aspect is NULL for spheres.  The gap of par is not used.
  * *evaluations counts particles. */

@@ -146,5 +146,5 @@ double population_gap(const struct population *p, const struct abrasion_par *par
 {
 	struct oil oil = { p, *par, n };
 
-	return abrasion_widest(pressure_at, &oil, p->largest, pressure, carried);
+	return abrasion_widest(pressure_at, NULL, &oil, p->largest, pressure, carried);
 }

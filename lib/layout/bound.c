@@ -1,6 +1,7 @@
 #include "layout/bound.h"
 #include "num/status.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 /* Steps of the integrals: error 1e-12 for the Gaussian, which is smooth. */
@@ -130,9 +131,13 @@ enum num_status bound_sampled(const struct bound_par *par, const double *coil, i
 {
 	double T = par->zone / par->velocity * par->rate, middle = mean(coil, coils);
 	double sum[4] = { 0 }, variance[4];
-	size_t room = (size_t)(2 * pulse_reach(par->shape) * T) + 3;
-	double *work = malloc(3 * room * sizeof *work);
+	double most = 2 * pulse_reach(par->shape) * T + 3, *work;
+	size_t room;
 
+	if (!(most < (double)(PTRDIFF_MAX / 3 / sizeof *work)))
+		return NUM_MEMORY;
+	room = (size_t)most;
+	work = malloc(3 * room * sizeof *work);
 	if (!work)
 		return NUM_MEMORY;
 	for (int k = 0; k < phases; k++) {

@@ -244,7 +244,7 @@ static void run_gap(const struct particles_in *in)
 			put_particle(in, i, &a, volume);
 		if (surface_path && a.section[body - 1] > 0)
 			scratches_add(in->realisation, in->step, in->diameter[i],
-				a.depth[body - 1], a.section[body - 1]);
+				a.groove[body - 1], a.share[body - 1]);
 	}
 	put_summary(in, &par, &t);
 	for (int m = 0; m < ABRASION_MODES; m++)

@@ -1,6 +1,5 @@
 #include "scratches.h"
 #include "abrasion/groove.h"
-#include "abrasion/particle.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -18,7 +17,7 @@ struct moment {
 
 struct scratch {
 	struct moment from;
-	double diameter, depth, section;
+	double diameter, depth, share;
 	int cut;
 };
 
@@ -28,20 +27,12 @@ static struct moment *seen; /* by the records so far */
 static size_t records, seen_room;
 
 void scratches_add(
-	long realisation, long step, double diameter, double depth, double section)
+	long realisation, long step, double diameter, double depth, double share)
 {
 	if (room_for(&list, &room, n + 1, sizeof *list))
 		die(EXIT_RUN, "out of memory");
 	list[n++] = (struct scratch){ { realisation, (double)step }, diameter, depth,
-		section, 0 };
-}
-
-/* If both bodies are equally hard, a groove extends over half the distance on each. */
-static double way(const struct scratch *s, double length)
-{
-	double whole = abrasion_section(s->diameter, s->depth);
-
-	return whole > 0 ? length * s->section / whole : 0;
+		share, 0 };
 }
 
 /* Whether an earlier record is of this realisation and step. */
@@ -86,7 +77,7 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 				fields_name(in), fields_count(in), r.nz);
 		*again += (size_t)is_again(now);
 		for (size_t i = 0; i < n; i++) {
-			struct groove g = { .length = way(&list[i], length),
+			struct groove g = { .length = list[i].share * length,
 				.diameter = list[i].diameter,
 				.depth = list[i].depth,
 				.cut = cut };

@@ -5,9 +5,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* One groove, to be cut into the surface of its realisation from this step on. */
+/* One groove, to be cut into the surface of its realisation from this step on, over this
+ * share of the length. */
 void scratches_add(
-	long realisation, long step, double diameter, double depth, double section);
+	long realisation, long step, double diameter, double depth, double share);
 /* Reads heights, cuts grooves into them at random positions and writes the fields, with
  * this cmd, to standard output: into each record those of its realisation (of all if
  * apart is 0) and, if stepped, of its step and earlier ones.  Returns the number of

@@ -118,6 +118,10 @@ static void check_modes(void)
 	par.hardness[1] = 2e9;
 	abrasion_particle(&par, 10e-6, 2, &a);
 	near(a.section[0], a.section[1], 0, "bodies of equal hardness share the groove");
+	near(a.section[0], a.share[0] * abrasion_section(10e-6, a.groove[0]), 1e-27,
+		"the groove of either has its depth over its share of the distance");
+	near(capped(a.groove[0], 10e-6) / capped(1e-6 - a.groove[0], 10e-6), 2, 1e-9,
+		"a body is grooved to where the front half carries what the other carries");
 	par.hardness[1] = 2e9 * (1 + 1e-9);
 	abrasion_particle(&par, 10e-6, 2, &b);
 	near(b.load / a.load, 1, 1e-8, "the load is continuous near equal hardness");
