@@ -452,7 +452,18 @@ duet --instrument fast-rig.tsv fast.au >kept.tsv
 grep -v '^#' fast.tsv >a
 grep -v '^#' kept.tsv >b
 same "a kept instrument reads means as well" a b
+# The polarity and the crosstalk of a kept instrument hold from the first sample on, whatever part
+# of a mean has come.
+sensorsim --uniform 80um:120um --number 30 --duration 3s --rate 100kHz --gap 20ms --snr 30dB \
+	--lag 0.2ms:0.5ms | sigconvert -o text |
+	awk -F '\t' -v OFS='\t' '/^#/ { next } /^[0-9]/ { $3 = -$3 - 0.05 * $2 } 1' |
+	sigconvert --from text >opposite.au
+duet --instrument opposite-means.tsv opposite.au 2>/dev/null | grep -v '^#' >a
+duet --instrument opposite-means.tsv opposite.au 2>/dev/null | grep -v '^#' >b
+at_least "opposite sensors with crosstalk are read in means" "$(wc -l <a)" 31
+same "a kept instrument has polarity and crosstalk in means as well" a b
 (dd bs=5003 2>/dev/null; :) <fast.au | duet | grep -v '^#' >b
+grep -v '^#' fast.tsv >a
 same "blocks of 5003 bytes give the same rows" a b
 column begin sections.tsv >a
 column end sections.tsv | paste a - >ranges

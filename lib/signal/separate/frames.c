@@ -16,10 +16,15 @@ static double sign_of(const struct separate *s, int sensor)
 	return sensor == 1 && s->calibrated && s->cal.gain < 0 ? -1 : 1;
 }
 
-void separate_align_signs(struct separate *s)
+void separate_align(struct separate *s, size_t from)
 {
+	size_t n = s->buffer[0].n - from;
+
 	for (int k = 1; k < s->channels && sign_of(s, 1) < 0; k += 2)
-		negate(s->buffer[k].x, s->buffer[k].n);
+		negate(s->buffer[k].x + from, n);
+	for (int k = 0; k < s->channels; k += 2)
+		calibration_unmix(s->cal.crosstalk, s->buffer[k].x + from,
+			s->buffer[k + 1].x + from, n);
 }
 
 static struct converter *converter_of(struct separate *s, int sensor, int component)
@@ -34,38 +39,36 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 	enum { BLOCK = 256 };
 	double turned[CHANNELS_MAX][BLOCK];
 	double along = cos(s->par.angle), across = sin(s->par.angle);
-	size_t lost[2][BLOCK], some;
+	size_t lost[2][BLOCK], some, from;
 
 	for (; n > 0; n -= some, x += some * (size_t)s->channels) {
 		some = n < BLOCK ? n : BLOCK;
 		for (int sensor = 0; sensor < 2; sensor++) {
 			const double *in = x + components(s) * sensor;
-			double sign = sign_of(s, sensor);
 
 			for (size_t i = 0; i < some; i++, in += s->channels) {
 				double one = in[0], two = in[components(s) - 1];
 
 				lost[sensor][i] =
 					converter_next(converter_of(s, sensor, 0), &one);
-				turned[sensor][i] = sign * one;
+				turned[sensor][i] = one;
 				if (!has_quadrature(s))
 					continue;
 				size_t other =
 					converter_next(converter_of(s, sensor, 1), &two);
 				lost[sensor][i] =
 					other > lost[sensor][i] ? other : lost[sensor][i];
-				turned[sensor][i] = sign * (along * one + across * two);
-				turned[sensor + 2][i] =
-					sign * (along * two - across * one);
+				turned[sensor][i] = along * one + across * two;
+				turned[sensor + 2][i] = along * two - across * one;
 			}
 		}
-		for (int k = 0; k < s->channels && s->calibrated; k += 2)
-			calibration_unmix(
-				s->cal.crosstalk, turned[k], turned[k + 1], some);
+		from = s->buffer[0].n;
 		for (int k = 0; k < s->channels; k++)
 			if (buffer_append(&s->buffer[k], turned[k], lost[k % 2], some) !=
 				NUM_OK)
 				return NUM_MEMORY;
+		if (s->calibrated)
+			separate_align(s, from);
 	}
 	return NUM_OK;
 }

@@ -113,10 +113,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	double reach;
 
 	s->calibrated = 1;
-	separate_align_signs(s);
-	for (int k = 0; k < s->channels; k += 2)
-		calibration_unmix(
-			c->crosstalk, s->buffer[k].x, s->buffer[k + 1].x, s->buffer[0].n);
+	separate_align(s, 0);
 	s->done = s->level_at = s->buffer[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->gain = s->scene.gain;

@@ -310,17 +310,17 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	if (separate_append(s, x, n) != NUM_OK)
-		return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);
+	if (s->par.kept && !s->calibrated && status == SEPARATE_OK)
+		status = separate_start_kept(s);
+	if (separate_append(s, x, n) != NUM_OK)
+		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n / s->ratio;
 	for (int c = 0; c < 2; c++)
 		s->counters.missing[c] = s->buffer[c].missing;
 	if (!s->calibrated && status == SEPARATE_OK)
-		status = s->par.kept      ? separate_start_kept(s)
-			 : s->par.clearly ? separate_learn_clearly(s)
-					  : separate_learn(s);
+		status = s->par.clearly ? separate_learn_clearly(s) : separate_learn(s);
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : status;

@@ -201,9 +201,10 @@ void separate_review(struct separate *s);
 /* Looks for limits with noise behind them in the n oldest samples; 1 if there are.
  * work: 2 n. */
 int separate_find_blurred(struct separate *s, size_t n, double *work);
-/* Negates the samples of sensor 2 if its polarity is now known to be that of sensor 1
- * reversed; those appended later are negated as they come. */
-void separate_align_signs(struct separate *s);
+/* Removes the crosstalk from the samples of the buffers from the first on, and negates
+ * those of sensor 2 if its polarity is known to be that of sensor 1 reversed; those
+ * appended to a calibrated s are aligned as they come. */
+void separate_align(struct separate *s, size_t from);
 
 /* queue.c */
 
