@@ -54,8 +54,7 @@ struct table_in {
 struct table_out {
 	FILE *f;
 	const char *name;
-	const char
-		*path; /* of the file to replace by the one called fresh, NULL if none */
+	const char *path; /* of the file that fresh replaces; NULL: none */
 	char *fresh;
 	char *head;          /* comment lines not yet written */
 	char *columns;       /* header line, NULL once written */

@@ -110,13 +110,13 @@ static void bend(struct load *l, double to)
 /* Extends the integrals over f, which has its last value from one time to another. */
 static void extend(struct load *l, double from, double to)
 {
-	double gap = to - from, old = l->whole, new = old + l->last *gap;
+	double gap = to - from, one = l->whole, two = one + l->last * gap;
 
 	l->sum += l->last * gap;
-	l->whole = new;
+	l->whole = two;
 	l->squares += l->last * l->last * gap;
-	l->bridge += (old * old + old * new + new *new) * gap / 3;
-	l->product += (2 * old * from + 2 * new *to + old *to + new *from) * gap / 6;
+	l->bridge += (one * one + one * two + two * two) * gap / 3;
+	l->product += (2 * one * from + 2 * two * to + one * to + two * from) * gap / 6;
 }
 
 /* z coth z - 1 */
