@@ -301,6 +301,19 @@ weight_of() {
 { printf 'unit\tt\ty\n'; knee 80 85 6 | sed 's/^/whole	/'; } >whole.tsv
 rising "a unit weighs less if it was stopped early" "$(weight_of stopped.tsv)" 0.1 "$(weight_of whole.tsv)"
 rising "a unit weighs less if it was first seen late" "$(weight_of late.tsv)" 0.1 "$(weight_of whole.tsv)"
+# Units of one law that differ in speed alone: more of them tell no less.
+many() {
+	awk -v units="$1" 'BEGIN { srand(5); print "unit\tt\ty"; for (u = 1; u <= units; u++) {
+		speed = exp(0.3 * (rand() - 0.5))
+		for (t = 0; t <= 1200; t += 100)
+			printf "u%d\t%d\t%.6g\n", u, t, (t * speed / 1000) ^ 1.7 * (1 + 0.02 * (rand() - 0.5)) } }'
+}
+awk 'BEGIN { srand(9); print "t\ty"; for (t = 0; t <= 600; t += 100)
+	printf "%d\t%.6g\n", t, (t * 1.1 / 1000) ^ 1.7 * (1 + 0.02 * (rand() - 0.5)) }' >bent.tsv
+many 200 >some.tsv
+many 300 >many.tsv
+rising "the weight of a fleet does not fall with its size" \
+	"$(weight_of some.tsv | awk '{ print $1 - 1e-4 }')" "$(weight_of many.tsv)" 1
 printf 'unit\tt\ty\na\t0\t0.1\na\t1\t0.1\n' >idle.tsv
 fails "a fleet that shows no wear" 1 "idle.tsv: none of 1 units shows any wear" \
 	aopf --threshold 1 --direction up --fleet idle.tsv unit.tsv
