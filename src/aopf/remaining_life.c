@@ -224,6 +224,9 @@ static void read_fleet(
 	if (n == 0)
 		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
 			fleet_file, series_units(in));
+	if (n > BANK_PATHS_MAX)
+		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d",
+			fleet_file, BANK_PATHS_MAX, n);
 	stats_set("fleet_units", failed);
 	stats_set("fleet_units_carried_on", carried_on);
 	stats_set("fleet_units_left_out", series_units(in) - n);

@@ -93,6 +93,9 @@ struct bank_shape {
 	double seen;                   /* level up to which it is not extrapolated */
 };
 
+/* Paths of other units at most: the numbers of shapes have 16 bits. */
+enum { BANK_PATHS_MAX = 65000 };
+
 /* The value of a covariate in the future: as its own past tells, see loads.c, or exactly
  * its mean so far, its last value, or value. */
 enum bank_future { BANK_PAST, BANK_MEAN, BANK_LAST, BANK_VALUE };
