@@ -36,8 +36,9 @@ FILE *file_create(const char *path, const char **name);
  * file_empty(), so that it is still refused if it is opened for reading. */
 FILE *file_reserve(const char *path, const char **name);
 void file_empty(FILE *f);
-/* Opens a file beside path, under a name of this process alone.  file_replace() puts it,
- * once it is complete and closed, in the place of path, and frees its name. */
+/* Opens a file beside path, under a name of this process alone.  file_replace() puts it
+ * in the place of path once what it holds is complete, and frees its name; it may still
+ * be open. */
 FILE *file_create_beside(const char *path, char **fresh);
 void file_replace(char *fresh, const char *path);
 

@@ -59,9 +59,8 @@ const char *table_text(const struct table_in *t, int column);
 /* Dies if the present row has another value than the first in the column unit, if there
  * is one. */
 void table_one_unit(struct table_in *t);
-/* At the end: what a comment "# doubtful: why" says, with a warning; NULL if there is
- * none.
- */
+/* At the end: why the table is doubtful, as its comment "# doubtful: why" says, with a
+ * warning; NULL if it is not. */
 const char *table_doubted(const struct table_in *t);
 void table_close(struct table_in *t);
 

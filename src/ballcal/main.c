@@ -9,6 +9,7 @@
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "num/room.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,13 +103,6 @@ static double amplitude_of(const struct table_in *t, int column, double *sign)
 	return fabs(a);
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return x < y ? -1 : x > y;
-}
-
 /* The number, from 1, of the first pulse that stands alone with a response in a range. */
 static size_t first_within(const struct pulses *p, size_t from, double low, double high)
 {
@@ -126,7 +120,7 @@ static size_t first_within(const struct pulses *p, size_t from, double low, doub
 static void compare(struct pulses *p, size_t from, const char *name)
 {
 	size_t n = 0;
-	double *a = xcalloc(p->n - from, sizeof *a), low, high;
+	double *a = xcalloc(p->n - from, sizeof *a);
 	struct line_outliers other;
 
 	for (size_t i = from; i < p->n; i++)
@@ -136,20 +130,21 @@ static void compare(struct pulses *p, size_t from, const char *name)
 		free(a);
 		return;
 	}
-	qsort(a, n, sizeof *a, ascending);
+	sort_numbers(a, n);
 	if (a[n - 1] - a[0] <= 1e-12 * a[n - 1]) { /* rounding */
 		warn("%s: all %zu pulses are equal: their scatter is unknown", name, n);
 		p->equal++;
 	}
 	other = line_outliers(a, n);
 	other.p = fmin(1, balls.n * other.p);
-	low = a[other.first];
-	high = a[other.first + other.count - (other.count > 0)];
-	if (other.p < UNLIKELY)
+	if (other.p < UNLIKELY) {
+		double low = a[other.first], high = a[other.first + other.count - 1];
+
 		warn("%s: %zu of %zu pulses are not of the same ball as the others, from "
 		     "pulse %zu on, %.3g to %.3g V s/m: p = %.2g",
 			name, other.count, n, first_within(p, from, low, high), low, high,
 			other.p);
+	}
 	p->outlier_p = fmin(p->outlier_p, other.p);
 	free(a);
 }

@@ -119,8 +119,8 @@ static void extend(struct load *l, double from, double to)
 	l->product += (2 * one * from + 2 * two * to + one * to + two * from) * gap / 6;
 }
 
-/* z coth z - 1 */
-static double cothing(double z)
+/* z coth z - 1; below 1e-2 the leading term, here and in learn(), is right to 1e-5. */
+static double z_coth_z_less_1(double z)
 {
 	return z < 1e-2 ? z * z / 3 : z / tanh(z) - 1;
 }
@@ -139,7 +139,7 @@ static void learn(struct load *l, double age)
 	double mean = l->whole / age, square = l->squares / age - mean * mean,
 	       bridge = l->bridge / age - 2 * mean * l->product / age +
 			mean * mean * age * age / 3,
-	       ratio, low = 0, high = 1e6;
+	       ratio, low = 0, high = 1e6; /* of z: pulled at once */
 
 	l->pull = l->wander = 0;
 	if (!(square > 1e-12 * l->squares / age))
@@ -147,7 +147,8 @@ static void learn(struct load *l, double age)
 	ratio = bridge / (square * age * age);
 	for (int i = 0; i < 60; i++) {
 		double z = 0.5 * (low + high),
-		       expected = z < 1e-2 ? 1. / 15 : 1 / (3 * cothing(z)) - 1 / (z * z);
+		       expected = z < 1e-2 ? 1. / 15
+					   : 1 / (3 * z_coth_z_less_1(z)) - 1 / (z * z);
 
 		if (expected > ratio)
 			low = z;
@@ -156,7 +157,7 @@ static void learn(struct load *l, double age)
 	}
 	low = fmax(low, 1e-2);
 	l->pull = low / age;
-	l->wander = 2 * square * low * low / (age * cothing(low));
+	l->wander = 2 * square * low * low / (age * z_coth_z_less_1(low));
 }
 
 void bank_load(struct bank *b, double t, const double *x)
@@ -175,7 +176,8 @@ void bank_load(struct bank *b, double t, const double *x)
 		l->last = effect(l, x[k]);
 		if (b->loaded) {
 			extend(l, b->loaded_to - b->loaded_from, t - b->loaded_from);
-			learn(l, t - b->loaded_from);
+			if (b->par.load[k].future == BANK_PAST)
+				learn(l, t - b->loaded_from);
 		}
 	}
 	if (!b->loaded)

@@ -20,6 +20,8 @@ void separate_align(struct separate *s, size_t from)
 {
 	size_t n = s->buffer[0].n - from;
 
+	if (n == 0) /* there may be no buffer yet */
+		return;
 	for (int k = 1; k < s->channels && sign_of(s, 1) < 0; k += 2)
 		negate(s->buffer[k].x + from, n);
 	for (int k = 0; k < s->channels; k += 2)

@@ -310,10 +310,12 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	if (s->par.kept)
+	/* What is kept is known before the first sample. */
+	if (s->par.kept) {
 		status = separate_check_alive(s, x, n);
-	if (s->par.kept && !s->calibrated && status == SEPARATE_OK)
-		status = separate_start_kept(s);
+		if (!s->calibrated && status == SEPARATE_OK)
+			status = separate_start_kept(s);
+	}
 	if (separate_append(s, x, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n / s->ratio;
