@@ -32,8 +32,8 @@ static const double SURPRISE = 5;
  * 7.0, 9.5, 12.0; 5: 6.9, 9.7, 12.2. */
 static const double HALT = 3.5;
 /* Noise, as a share of the range to the threshold, below which no coordinate describes
- * the wear: else readings without noise, or all equal, would be foretold with certainty,
- * see doc/benchmarks.md. */
+ * the wear: else readings without noise, or all equal, would be foretold with certainty:
+ * see "Least noise" in doc/benchmarks.md. */
 static const double FINEST = 3e-4;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
@@ -51,7 +51,8 @@ static const double BENT = -0.4;
  * growth in units of 1 / age, which is that of the steeper part of the changes to come
  * (passage.c), because curved coordinates stand for slow growth.  With more falls the
  * ends of wear that has just begun to accelerate are too early; rises at once and a
- * spread of the growth have no effect, as doc/benchmarks.md tells. */
+ * spread of the growth have no effect: see "Changes of the regime so far" in
+ * doc/benchmarks.md. */
 static const struct {
 	double hazard, falls, growth;
 } past = { 0.36, 0.25, 16 };

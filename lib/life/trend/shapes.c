@@ -7,8 +7,8 @@
 		.log_prior = (prior)                                               \
 	}
 
-/* The weights and the changes of regime to come (passage.c) were chosen together, as
- * doc/benchmarks.md tells: by random search over every other of 31 measured series, the
+/* The weights and the changes of regime to come (passage.c) were chosen together (scores:
+ * doc/benchmarks.md) by a random search over every other of 31 measured series, the
  * first 13 kinds of tests/long/lives.c and the sigmoid, 24 to 40 paths of each with other
  * seeds, and 30 pumps of scripts/synthetic-pump with other seeds.  It minimised the mean
  * logarithm of the CRPS, with penalties for a coverage below 0.83 of any kind, for
