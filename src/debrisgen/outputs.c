@@ -184,6 +184,8 @@ void worn_begin(
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
 	w->coefficients = (struct coefficients){ 0 };
+	/* a realisation or its last steps may have no particle */
+	table_comment(w->particles, "realisation", "%ld", r->realisation);
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
@@ -410,6 +412,11 @@ void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_st
 		put_stress(&w->stress, c->r, s);
 	if (w->surface.out)
 		put_surface(&w->surface, c, s);
+}
+
+void worn_end(struct worn *w, long step)
+{
+	table_comment(w->particles, "last_step", "%ld", step);
 }
 
 void worn_close(struct worn *w)

@@ -86,6 +86,10 @@ enum partition_status partition_class(
  * realisation is in one part; else the ensembles of two studies have the same numbers. */
 void partition_part(struct partition *p, int class, long part);
 
+/* A sparse class has at least this realisation and this step, though nothing may have been
+ * shed. */
+void partition_simulated(struct partition *p, int class, long realisation, long step);
+
 /* Adds the wear of one realisation in one step (from 1): volume worn (m3), number of
  * particles, and number of those of at least the critical size.  Consecutive calls for
  * the same realisation and step add up (particle tables); others return PARTITION_TWICE.
