@@ -26,22 +26,24 @@ struct wear {
 	const char *file;                        /* as given */
 	int realisation, step, volume, diameter; /* columns */
 	int class;
-	long lowest, highest, last_step; /* simulated, as the comments tell; -1: unknown */
+	long lowest, highest,
+		last_step; /* simulated, as the comments tell; -1: unknown */
 };
 
 /* What of a particle table was simulated, also where nothing was shed. */
 static void take_comment(void *to, const char *key, const char *value)
 {
 	struct wear *w = to;
-	long n;
+	int realisation = strcmp(key, "realisation") == 0;
 	char *end;
+	long n;
 
-	if (strcmp(key, "realisation") != 0 && strcmp(key, "last_step") != 0)
+	if (!realisation && strcmp(key, "last_step") != 0)
 		return;
 	n = strtol(value, &end, 10);
-	if (end == value || *end || n < 0 || n > 1000000000)
+	if (end == value || *end || n < 0 || (double)n > (realisation ? 1e15 : 1e6))
 		return;
-	if (strcmp(key, "last_step") == 0) {
+	if (!realisation) {
 		w->last_step = n > w->last_step ? n : w->last_step;
 		return;
 	}
@@ -202,10 +204,13 @@ static void read_wear(
 	free(file);
 }
 
+/* The relative standard error of equal volumes, which sums round. */
+static const double ROUNDING = 1e-14;
+
 /* 1 if the ensemble of a class contains no information on the uncertainty of its mean. */
 static int is_doubtful(const struct partition *p, int class, const char *file)
 {
-	double mean, n = partition_count(p, class, &mean);
+	double mean, error, n = partition_count(p, class, &mean, &error);
 
 	if (n < 2)
 		warn("%s: a single realisation: the uncertainty of its wear is unknown and not included",
@@ -213,7 +218,10 @@ static int is_doubtful(const struct partition *p, int class, const char *file)
 	else if (!(mean > 0))
 		warn("%s: none of %.0f realisations wore: its wear is assumed to be zero",
 			file, n);
-	return n < 2 || !(mean > 0);
+	else if (!(error > ROUNDING))
+		warn("%s: %.0f realisations of equal volume: the uncertainty of the wear is unknown and not included",
+			file, n);
+	return n < 2 || !(error > ROUNDING);
 }
 
 struct partition *fragments_read(

@@ -328,9 +328,10 @@ long partition_realisation(const struct partition *p)
 	return p->culprit_realisation;
 }
 
-double partition_count(const struct partition *p, int class, double *mean)
+double partition_count(const struct partition *p, int class, double *mean, double *error)
 {
 	*mean = p->class[class].all.mean;
+	*error = p->class[class].error;
 	return p->class[class].realisations;
 }
 
