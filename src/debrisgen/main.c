@@ -247,7 +247,8 @@ static void wear_record(struct run *run, struct record *r)
 		}
 		wear_step(run, &c, c.done + k);
 	}
-	worn_end(run->out, c.done + k - 1);
+	if (k > 1)
+		worn_end(run->out, r->realisation, c.done + k - 1);
 }
 
 static void warn_of_edge(struct run *run)

@@ -184,8 +184,6 @@ void worn_begin(
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
 	w->coefficients = (struct coefficients){ 0 };
-	/* a realisation or its last steps may have no particle */
-	table_comment(w->particles, "realisation", "%ld", r->realisation);
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
@@ -414,8 +412,10 @@ void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_st
 		put_surface(&w->surface, c, s);
 }
 
-void worn_end(struct worn *w, long step)
+void worn_end(struct worn *w, long realisation, long step)
 {
+	/* all of its steps or the last ones may have no particle */
+	table_comment(w->particles, "realisation", "%ld", realisation);
 	table_comment(w->particles, "last_step", "%ld", step);
 }
 
