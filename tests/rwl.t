@@ -35,7 +35,10 @@ near "1 um at 7 um/h gives 1/7 h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
 # The scale of the steps from the state: the mean wears what was observed.
 ok "steps are scaled by the state" rwl --wear even.tsv --threshold-gap 15um gap.tsv
 near "2 um at 1 um/h give 2 h again" "$(cell out 4 mean)" 7200 1e-6
-ok "steps are scaled by an earlier unit" rwl --new --wear even.tsv --threshold-gap 15um --calibrate gap.tsv
+# twin FILE: the same unit at a rate that differs by 1e-9, since one does not tell how units differ
+twin() { awk '/^[0-9]/ { printf "%.17g\t%s\n", $1 * (1 + 1e-9), $2; next } { print }' "$1" >"twin.$1"; }
+twin gap.tsv
+ok "steps are scaled by earlier units" rwl --new --wear even.tsv --threshold-gap 15um --calibrate gap.tsv --calibrate twin.gap.tsv
 # least-squares slope of 10 11 13 20 um at 0 1 3 4 h: 2.2 um/h, new at 1.5 L/min
 near "the earlier unit is used over its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
 
@@ -325,8 +328,10 @@ printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv
 ok "the run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
 near "4 um at 0.5 um/h give 8 h" "$(cell out 4 mean)" 28800 1e-6
 is "there is no rate before the end of the run-in" "$(cell out 2 mean)" nan
-ok "the run-in is skipped in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h --calibrate run-in.tsv
-near "5 um at 0.5 um/h give 10 h" "$(cell out 1 mean)" 36000 1e-6
+twin run-in.tsv
+ok "the run-in is skipped in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h \
+	--calibrate run-in.tsv --calibrate twin.run-in.tsv
+near "5 um at 0.5 um/h give 10 h" "$(cell out 1 mean)" 36000 1e-3
 
 # A repair of ten rows of wear is no wear: the mean over all time would be late by a third.
 awk 'BEGIN { srand(5); print "t\tgap"
@@ -348,7 +353,23 @@ ok "without a repair there is no doubt" rwl --wear-rate mean --threshold-gap 17u
 ok "a single low reading is no repair" rwl --wear-rate mean --threshold-gap 17um outlier.tsv
 fails "a calibration by a unit that was repaired" 1 'repaired.tsv: the gap falls behind its rate' \
 	rwl --new --wear even.tsv --threshold-gap 17um --calibrate repaired.tsv
-ok "a calibration by one that was not" rwl --new --wear even.tsv --threshold-gap 17um --calibrate steady.tsv
+twin steady.tsv
+ok "a calibration by two that were not" rwl --new --wear even.tsv --threshold-gap 17um --calibrate steady.tsv --calibrate twin.steady.tsv
+fails "a calibration by one unit" 3 'steady.tsv: a single earlier unit: how units differ is unknown' \
+	rwl --new --wear even.tsv --threshold-gap 17um --initial-gap 10um --fragment-area 1e-8m2 --area 2346.3e-6m2 --calibrate steady.tsv
+# Units of rates 1, 1.2 and 1.6 um/h: the logarithm of another has the mean of theirs and, by
+# Student's t of 2 degrees, which is below 2.92 in 95 %, the standard error s sqrt(1 + 1/3).
+for rate in 1 1.2 1.6; do
+	awk -v r=$rate 'BEGIN { print "t\tgap"; for (k = 0; k < 5; k++) printf "%d\t%.17g\n", 3600 * k, (10 + r * k) * 1e-6 }' >unit$rate.tsv
+done
+rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um -c 20000 --calibrate unit1.tsv --calibrate unit1.2.tsv \
+	--calibrate unit1.6.tsv >out 2>err
+for end in q50:0 q05:-1 q95:1; do
+	near "the ${end%:*} of units that differ, in the logarithm" "$(cell out 1 ${end%:*} | awk '{ print log($1) }')" \
+		"$(awk -v z=${end#*:} 'BEGIN { a = log(1.2); b = log(1.6); m = (a + b) / 3
+			s = sqrt((m * m + (a - m) ^ 2 + (b - m) ^ 2) / 2)
+			print log(5 * 3600) - m + z * 2.92 * s * sqrt(4 / 3) }')" 0.03
+done
 
 # Provenance: the command line rebuilds the bytes.
 rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state gap.tsv >a
