@@ -109,6 +109,10 @@ same 'what follows the samples of a stream is none' listed/chunks.tsv filed/chun
 printf 'RIFF\0\0\0\0WAVEfmt \020\0\0\0\003\0\002\0\020\047\0\0\200\070\001\0\010\0\040\0data\0\0\0\0' >narrow.wav
 fails 'samples of another width for the same state' 1 'made with other options or of another stream: wav 3 8' \
 	watch --state listed narrow.wav
+mkdir -p full/spool/2
+watch --state full <hours.wav 2>said
+is 'a stream that cannot be stored fails' "$? $(column chunk full/chunks.tsv | tr '\n' ' ')$(tail -n 1 said)" \
+	'1 0 wearwatch: full/spool: the stream cannot be stored'
 fails 'other options for the same state' 1 'made with other options' \
 	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au
 sensorsim --duration 6s --noise 10mV --seed 2 particles.tsv >other.au
