@@ -218,6 +218,17 @@ fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --ou
 printf 'Time;Flow\n0;1.234,5\n' >thousand.csv
 fails "a separator of thousands in a CSV with semicolons" 1 "line 2: Flow: '1.234,5' is not a number" sigconvert --output table thousand.csv
 printf 'Time;Flow\n' >empty.csv
+printf 'Date,"Flow, return [L/min]",Unit\n2026-02-27,"1.5","Pump 7, left"\n2026-03-01,1.6,"called ""B"""\n' >quoted.csv
+is "dates without a time, and quoted cells with separators and quotes, are read" \
+	"$(sigconvert --output table --time Date --columns 'flow=Flow, return;unit=Unit' quoted.csv | grep -v '^# [sce].*:.*[^0]$' | tr '\t\n' ' |')" \
+	'# units: s L/min 1|# start: 2026-02-27T00:00:00|t flow unit|0 1.5 Pump 7, left|172800 1.6 called "B"|'
+printf 'time,"flow, return"\n0,"1,5"\n' >decimal.csv
+fails "a quoted number with a comma, between commas" 1 "flow, return: '1,5' is not a number" sigconvert --output table decimal.csv
+printf 'time,y\n0,"1\n' >open.csv
+fails "a quoted cell without an end" 1 'line 2: a quoted cell has no end in this line' sigconvert --output table open.csv
+printf 'time,y\n0,"1"5\n' >behind.csv
+fails "text behind a quoted cell" 1 'line 2: text behind a quoted cell' sigconvert --output table behind.csv
+fails "a date that is not the time" 1 "Date: '2026-02-27' is not a number: specify --time" sigconvert --output table quoted.csv
 printf 'Time;Flow\n0;1\n2026-11-22 23:00;2\n' >mixed.csv
 fails "a date below a number of seconds" 1 "line 3: '2026-11-22 23:00' is not a time" sigconvert --output table mixed.csv
 printf 'time [s];T [K];u\n0;1;2\n1;3;4\n' >twice.csv

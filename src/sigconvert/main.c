@@ -73,7 +73,7 @@ static void check_options(void)
 					   : "scale");
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale must not be 0");
-	if (start && !moment_parse(start, &moment))
+	if (start && (!moment_parse(start, &moment) || moment.date))
 		die(EXIT_USAGE,
 			"--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
 			start);
