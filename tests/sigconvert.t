@@ -22,6 +22,20 @@ sigconvert --output raw a.au >a.raw
 is "raw has 8 bytes per sample" "$(wc -c <a.raw)" 48000
 sigconvert --from raw --rate 10kHz --channels 2 --output text a.raw >c.tsv
 is "raw reads back to the last bit" "$(rows a.tsv)" "$(rows c.tsv)"
+# Samples of another byte order, and integers; od prints the bytes of each float64 or int16
+od -An -v -tu1 -w8 a.raw | awk '{ for (i = 8; i > 0; i--) printf "%c%03o", 92, $i; print "" }' | while read -r bytes; do
+	# shellcheck disable=SC2059 # a format of octal bytes
+	printf "$bytes"
+done >swapped.raw
+sigconvert --output text a.au | awk -F '\t' '/^[0-9]/ { for (i = 2; i <= 3; i++) { v = int($i * 30000); if (v < 0) v += 65536
+	printf "%c%03o%c%03o\n", 92, v % 256, 92, int(v / 256) } }' | while read -r bytes; do
+	# shellcheck disable=SC2059
+	printf "$bytes"
+done >integers.raw
+for type in swapped integers; do
+	sigconvert --from raw --rate 10kHz --channels 2 $type.raw 2>err >out
+	is "raw samples that are $type are doubted" "$? $(grep -c 'not little-endian float64?' err)" "3 1"
+done
 is "the header records the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
 
 printf 'Time [ms];Flow [L/min];"u1 [mV]";u2 (V)\r\n0,0;60;1500,5;2\r\n0,5;61;-20;nan\r\n1,0;60;3;4\r\n' >daq.csv
