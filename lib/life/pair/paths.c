@@ -10,8 +10,8 @@
 
 struct paths {
 	struct paths_par par;
-	struct path *path; /* NULL without fragments */
-	double mean;       /* of the component per step, by all fragments */
+	struct path *path;   /* NULL without fragments */
+	double mean;         /* of the component per step, by all fragments */
 	struct running logs; /* of the slopes of earlier units */
 	gsl_rng *rng;
 };
