@@ -105,6 +105,16 @@ near "steps: the mean volume is right" "$(column volume steps.tsv | head -n 1)" 
 near "steps: volumes are accumulated" "$(column cumulative_volume steps.tsv | tail -n 1)" 2.87979326579e-11 1e-22
 debrisstat -o steps --realisations 5 growth.tsv >steps.tsv
 is "realisations without particles count as zero" "$(column particles steps.tsv | head -n 1)" 1
+# Five realisations and nine steps, of which two and six have particles
+{
+	grep -v '^#' growth.tsv
+	printf '# realisation: %s\n' 0 1 2 0 3 4
+	echo '# last_step: 9'
+} >ends.tsv
+debrisstat -o steps ends.tsv >told.tsv
+debrisstat -o steps --realisations 5 growth.tsv | grep -v '^#' >steps.tsv
+is "realisations and steps that comments tell of count as zero" "$(grep -v '^#' told.tsv | head -n "$(wc -l <steps.tsv)" |
+	cksum) $(column step told.tsv | tail -n 1)" "$(cksum <steps.tsv) 9"
 printf 'realisation\tstep\n0\t1\n0\t2\n1\t1\n2\t1\n' >summary.tsv
 debrisstat -o steps --step 1:2 --summary summary.tsv growth.tsv >steps.tsv
 is "the summary states which steps took place" "$(column realisations steps.tsv | tr '\n' ' ')" "3 2 "

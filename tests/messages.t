@@ -33,6 +33,8 @@ fails "an empty table" 1 '/dev/null: empty, want' rwl --new --wear /dev/null --s
 printf 't;y\n0;1\n' >semicolon
 fails "semicolons" 1 "no column 'y' among 't;y': 'sigconvert --output table' makes a table of it" aopf --threshold 1 semicolon
 printf 't\ty\n0,5\t1\n' >comma
+printf 't\ty\n2026-11-29\t1\n' >date
+fails "dates" 1 "line 2: t: '2026-11-29' is not a number: 'sigconvert --output table' reads dates" aopf --threshold 1 date
 fails "decimal commas" 1 "line 2: t: '0,5' is not a number: 'sigconvert --output table' reads decimal commas" aopf --threshold 1 comma
 printf 'Time [h]\tFlow [L/min]\n0\t1\n' >named
 fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]': 'sigconvert --output table' makes" aopf --threshold 1 named

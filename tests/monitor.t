@@ -129,6 +129,20 @@ awk -F '\t' '{ best = 1e9; for (k = 3; k <= 22; k++) { p = (k - 3) / 20
 near "the replacement time has the lowest cost" "$(cut -f 26 last)" "$(cat best)" 2
 is "no replacement is advised if a failure costs no more" \
 	"$(aopf --threshold 1 --direction up --lives-only --cost-ratio 1 one.tsv | column replace_in /dev/stdin | tail -1)" inf
+is "a unit that has failed is replaced at once" \
+	"$(seq 0 9 | awk 'BEGIN { print "t\ty" } { print $1 "\t" $1 / 5 }' |
+		aopf --threshold 1 --lives-only --cost-ratio 10 | column replace_in /dev/stdin | tail -1)" 0
+fails "a failure whose cost the draws do not resolve" 2 'cost-ratio 1000: want 1 to 500' \
+	aopf --threshold 1 --cost-ratio 1000 one.tsv
+# After 11 rows ten ages are 100, less than the mission and the level of the alarm.
+seq 0 10 | awk 'BEGIN { print "t\ty"; srand(4) } { print $1 "\t" $1 / 60 + (rand() - 0.5) / 200 }' >young.tsv
+for horizon in 20 0 1e6; do
+	aopf --threshold 1 --direction up --lives-only --mission 1000 --cost-ratio 5 --alarm 300 --levels 0.5,0.9 \
+		--horizon $horizon young.tsv | grep -v '^#' | cut -f 6-8 >decided.$horizon
+done
+same "what is decided does not depend on the usual horizon" decided.0 decided.1e6
+same "nor on a short one" decided.20 decided.1e6
+is "a young unit does not survive a long mission, and has an alarm" "$(tail -1 decided.0 | cut -f 1,3 | tr '\t' ' ')" "1 1"
 
 # Alarms: raised when the lowest quantile falls to a level, cleared above 1.25 of it.
 wear 100 95 8 | sed '1i t	y' >worn.tsv

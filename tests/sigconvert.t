@@ -22,6 +22,20 @@ sigconvert --output raw a.au >a.raw
 is "raw has 8 bytes per sample" "$(wc -c <a.raw)" 48000
 sigconvert --from raw --rate 10kHz --channels 2 --output text a.raw >c.tsv
 is "raw reads back to the last bit" "$(rows a.tsv)" "$(rows c.tsv)"
+# Samples of another byte order, and integers; od prints the bytes of each float64 or int16
+od -An -v -tu1 -w8 a.raw | awk '{ for (i = 8; i > 0; i--) printf "%c%03o", 92, $i; print "" }' | while read -r bytes; do
+	# shellcheck disable=SC2059 # a format of octal bytes
+	printf "$bytes"
+done >swapped.raw
+sigconvert --output text a.au | awk -F '\t' '/^[0-9]/ { for (i = 2; i <= 3; i++) { v = int($i * 30000); if (v < 0) v += 65536
+	printf "%c%03o%c%03o\n", 92, v % 256, 92, int(v / 256) } }' | while read -r bytes; do
+	# shellcheck disable=SC2059
+	printf "$bytes"
+done >integers.raw
+for type in swapped integers; do
+	sigconvert --from raw --rate 10kHz --channels 2 $type.raw 2>err >out
+	is "raw samples that are $type are doubted" "$? $(grep -c 'not little-endian float64?' err)" "3 1"
+done
 is "the header records the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
 
 printf 'Time [ms];Flow [L/min];"u1 [mV]";u2 (V)\r\n0,0;60;1500,5;2\r\n0,5;61;-20;nan\r\n1,0;60;3;4\r\n' >daq.csv
@@ -218,6 +232,17 @@ fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --ou
 printf 'Time;Flow\n0;1.234,5\n' >thousand.csv
 fails "a separator of thousands in a CSV with semicolons" 1 "line 2: Flow: '1.234,5' is not a number" sigconvert --output table thousand.csv
 printf 'Time;Flow\n' >empty.csv
+printf 'Date,"Flow, return [L/min]",Unit\n2026-02-27,"1.5","Pump 7, left"\n2026-03-01,1.6,"called ""B"""\n' >quoted.csv
+is "dates without a time, and quoted cells with separators and quotes, are read" \
+	"$(sigconvert --output table --time Date --columns 'flow=Flow, return;unit=Unit' quoted.csv | grep -v '^# [sce].*:.*[^0]$' | tr '\t\n' ' |')" \
+	'# units: s L/min 1|# start: 2026-02-27T00:00:00|t flow unit|0 1.5 Pump 7, left|172800 1.6 called "B"|'
+printf 'time,"flow, return"\n0,"1,5"\n' >decimal.csv
+fails "a quoted number with a comma, between commas" 1 "flow, return: '1,5' is not a number" sigconvert --output table decimal.csv
+printf 'time,y\n0,"1\n' >open.csv
+fails "a quoted cell without an end" 1 'line 2: a quoted cell has no end in this line' sigconvert --output table open.csv
+printf 'time,y\n0,"1"5\n' >behind.csv
+fails "text behind a quoted cell" 1 'line 2: text behind a quoted cell' sigconvert --output table behind.csv
+fails "a date that is not the time" 1 "Date: '2026-02-27' is not a number: specify --time" sigconvert --output table quoted.csv
 printf 'Time;Flow\n0;1\n2026-11-22 23:00;2\n' >mixed.csv
 fails "a date below a number of seconds" 1 "line 3: '2026-11-22 23:00' is not a time" sigconvert --output table mixed.csv
 printf 'time [s];T [K];u\n0;1;2\n1;3;4\n' >twice.csv

@@ -58,6 +58,11 @@ ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
 is 'headerless samples have the given spacing' "$(cell dx) $(cell max)" '2e-06 11'
 ok 'headerless samples have the given spacing along x and y' records --raw 4x3 --pixel 2umx3um plain.raw
 is 'the spacing along y is kept' "$(cell dx) $(cell dy)" '2e-06 3e-06'
+# The bytes of 4 floats of 0.5 um to 1 um, and of 4 numbers near 0.1 of the other byte order
+printf '\275\067\006\065%.0s' 1 2 3 4 >float.raw
+printf '\077\271\231\231\231\231\231\177%.0s' 1 2 >swapped.raw
+fails 'headerless samples of float32' 1 'record 1: samples of up to .*: not little-endian float64?' records --raw 2x1 --pixel 2um float.raw
+fails 'headerless samples of the other byte order' 1 'not little-endian float64?' records --raw 2x1 --pixel 2um swapped.raw
 fails 'a pixel of no samples' 2 '--raw and --pixel go together' records --pixel 2um plain.raw
 cat plain.nrrd big.nrrd plain.gsf >three
 is 'records of three formats may follow each other' "$(records -o count three)" 3

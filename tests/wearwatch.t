@@ -100,6 +100,19 @@ is 'a stream as long as its header declares is whole' "$? $(cat said)" '0 '
 plain 20000 | watch --state joined 2>said
 is 'a stream that continues another is doubted by its own length' \
 	"$? $(grep -c 'standard input: cut off: want 60000 frames, got 20000' said)" '3 1'
+# A chunk of text behind the samples, of 0.2 s if they were some
+sigconvert --output wav hours.au >hours.wav
+{ cat hours.wav && printf 'LIST\0\175\0\0' && head -c 32000 hours.wav; } | watch --state listed 2>said
+is 'a stream ends where its samples end' "$? $(cat said)" '0 '
+watch --state filed hours.wav
+same 'what follows the samples of a stream is none' listed/chunks.tsv filed/chunks.tsv
+printf 'RIFF\0\0\0\0WAVEfmt \020\0\0\0\003\0\002\0\020\047\0\0\200\070\001\0\010\0\040\0data\0\0\0\0' >narrow.wav
+fails 'samples of another width for the same state' 1 'made with other options or of another stream: wav 3 8' \
+	watch --state listed narrow.wav
+mkdir -p full/spool/2
+watch --state full <hours.wav 2>said
+is 'a stream that cannot be stored fails' "$? $(column chunk full/chunks.tsv | tr '\n' ' ')$(tail -n 1 said)" \
+	'1 0 wearwatch: full/spool: the stream cannot be stored'
 fails 'other options for the same state' 1 'made with other options' \
 	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au
 sensorsim --duration 6s --noise 10mV --seed 2 particles.tsv >other.au

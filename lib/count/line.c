@@ -75,27 +75,68 @@ void line_allow_unequal(
 	l->t = line_t(confidence, l->degrees);
 }
 
-double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l)
-{
-	double within = 0, about = 0, groups = 0;
+/* The points of equal x from one on. */
+struct group {
+	double x, mean;
+	double degrees; /* of freedom of the weight; 0: a single point, or no scatter */
+	double weight;  /* the reciprocal of the variance of the mean */
 	size_t end;
+};
 
-	for (size_t i = 0; i < n; i = end) {
-		double mean = 0, off;
+static struct group group_at(const double *x, const double *y, size_t n, size_t begin)
+{
+	struct group g = { .x = x[begin], .end = begin };
+	double squares = 0, count;
 
-		for (end = i; end < n && x[end] == x[i]; end++)
-			mean += y[end];
-		mean /= (double)(end - i);
-		for (size_t k = i; k < end; k++)
-			within += (y[k] - mean) * (y[k] - mean);
-		off = mean - l->value - l->slope * (x[i] - l->middle);
-		about += (double)(end - i) * off * off;
-		groups++;
+	for (; g.end < n && x[g.end] == g.x; g.end++)
+		g.mean += y[g.end];
+	count = (double)(g.end - begin);
+	g.mean /= count;
+	for (size_t i = begin; i < g.end; i++)
+		squares += (y[i] - g.mean) * (y[i] - g.mean);
+	if (squares > 0) {
+		g.degrees = count - 1;
+		g.weight = count * g.degrees / squares;
 	}
-	if (groups < 3 || (double)n <= groups || !(within > 0))
+	return g;
+}
+
+double line_lack_of_fit(const double *x, const double *y, size_t n)
+{
+	double sum = 0, mx = 0, my = 0, xx = 0, xy = 0, about = 0, loose = 0, groups = 0,
+	       q, scale;
+	struct group g;
+
+	for (size_t i = 0; i < n; i = g.end) {
+		g = group_at(x, y, n, i);
+		sum += g.weight;
+		mx += g.weight * (g.x - x[0]);
+		my += g.weight * g.mean;
+		groups += g.degrees > 0;
+	}
+	if (groups < 3)
 		return NAN;
-	return gsl_cdf_fdist_Q(about / (groups - 2) / (within / ((double)n - groups)),
-		groups - 2, (double)n - groups);
+	mx = x[0] + mx / sum;
+	my /= sum;
+	for (size_t i = 0; i < n; i = g.end) {
+		g = group_at(x, y, n, i);
+		xx += g.weight * (g.x - mx) * (g.x - mx);
+		xy += g.weight * (g.x - mx) * (g.mean - my);
+	}
+	for (size_t i = 0; i < n; i = g.end) {
+		double u, off, lever;
+
+		g = group_at(x, y, n, i);
+		u = g.x - mx;
+		off = g.mean - my - xy / xx * u;
+		lever = g.weight * (1 / sum + u * u / xx);
+		about += g.weight * off * off;
+		if (g.degrees > 0)
+			loose += (1 - lever) * (1 - lever) / g.degrees;
+	}
+	q = groups - 2;
+	scale = q + 2 * loose - 6 * loose / (q + 2);
+	return gsl_cdf_fdist_Q(about / scale, q, q * (q + 2) / (3 * loose));
 }
 
 struct line_outliers line_outliers(const double *y, size_t n)

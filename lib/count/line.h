@@ -37,9 +37,10 @@ void line_allow_unequal(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
 /* Lack-of-fit test: p-value of the hypothesis that the means of groups of equal x lie on
- * a line (F test); points ordered by x.  NAN with fewer than three groups or one point
- * each. */
-double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
+ * a line, if the scatter differs between groups (Johansen, Biometrika 67 (1980) 85);
+ * points ordered by x.  Groups of a single point or of equal y tell no scatter and do not
+ * count; NAN with fewer than three others. */
+double line_lack_of_fit(const double *x, const double *y, size_t n);
 
 /* The lowest or highest of some numbers that are not of the others. */
 struct line_outliers {

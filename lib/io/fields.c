@@ -7,6 +7,7 @@
 #include "io/gsf.h"
 #include "io/kinds.h"
 #include "io/nrrd.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -59,6 +60,25 @@ struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
 	return in;
 }
 
+/* Headerless samples do not state their type.  Integers, and numbers of the other byte
+ * order, have random exponents if taken for float64; heights of float32 below a
+ * millimetre are then below 1e-26. */
+static void check_magnitudes(const struct place *at, const struct record *r)
+{
+	size_t n = record_points(r), huge = 0;
+	double most = 0;
+
+	for (int k = 0; k < r->nfields; k++)
+		for (size_t i = 0; r->data[k] && i < n; i++) {
+			huge += fabs(r->data[k][i]) > 1e100;
+			most = fmax(most, fabs(r->data[k][i]));
+		}
+	if (huge > n / 100 || (most > 0 && most < 1e-20))
+		die(EXIT_RUN,
+			"%s: record %ld: samples of up to %.2g: not little-endian float64?",
+			at->name, at->record, most);
+}
+
 static void read_raw(struct fields_in *in, struct record *r)
 {
 	const char *fields = in->raw.fields;
@@ -75,6 +95,7 @@ static void read_raw(struct fields_in *in, struct record *r)
 	check_sizes(&in->at, (double[]){ n, r->nx, r->ny, r->nz }, 4);
 	name_fields(&in->at, fields, r, n);
 	samples_read(&in->at, r, (struct samples){ 0, 0 });
+	check_magnitudes(&in->at, r);
 }
 
 /* Recognises the format by the first line, which has been read then. */

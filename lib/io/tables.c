@@ -240,6 +240,13 @@ static int is_comma_decimal(const char *s)
 	       s[whole + 1 + strspn(s + whole + 1, "0123456789eE+-")] == '\0';
 }
 
+/* "2026-11-29" and more */
+static int is_date(const char *s)
+{
+	return strspn(s, "0123456789") == 4 && s[4] == '-' &&
+	       strspn(s + 5, "0123456789") == 2 && s[7] == '-';
+}
+
 static int is_missing(const char *s)
 {
 	return !*s || !strcmp(s, "nan") || !strcmp(s, "NaN") || !strcmp(s, "NA") ||
@@ -460,6 +467,8 @@ double table_number(const struct table_in *t, int column)
 			t->number, t->column[column], t->cell[column],
 			is_comma_decimal(t->cell[column])
 				? ": 'sigconvert --output table' reads decimal commas"
+			: is_date(t->cell[column])
+				? ": 'sigconvert --output table' reads dates"
 				: "");
 	if (!t->scale)
 		return v;

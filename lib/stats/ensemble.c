@@ -25,7 +25,8 @@ struct ensemble {
 	int clash;
 	long culprit;
 	double particles, reported;
-	size_t steps; /* up to the last one with rows */
+	double simulated; /* realisations, at least */
+	size_t steps;     /* up to the last one with rows */
 	struct ensemble_step *step;
 	size_t step_room;
 	struct ensemble_step after; /* of a step after the last one with rows */
@@ -308,6 +309,13 @@ enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, l
 	return reading(e, realisations_add(e->reader, &cell));
 }
 
+enum ensemble_status ensemble_simulated(
+	struct ensemble *e, double realisations, long steps)
+{
+	e->simulated = fmax(e->simulated, realisations);
+	return reach_step(e, (size_t)steps) ? ENSEMBLE_MEMORY : ENSEMBLE_OK;
+}
+
 /* Realisations without rows have no particles, and all their steps took place. */
 static void add_empty(struct ensemble *e)
 {
@@ -339,7 +347,7 @@ enum ensemble_status ensemble_close(struct ensemble *e)
 	if (status != ENSEMBLE_OK)
 		return status;
 	if (!(e->par.realisations > 0))
-		e->par.realisations = e->reported;
+		e->par.realisations = fmax(e->reported, e->simulated);
 	if (e->par.realisations < e->reported)
 		return ENSEMBLE_MORE;
 	if (!e->par.last)

@@ -38,7 +38,8 @@ enum ensemble_status {
 };
 
 struct ensemble_par {
-	double realisations; /* including those without particles; 0: those with rows */
+	double realisations; /* including those without particles; 0: those that are known
+			      */
 	long first, last;    /* steps that count; last 0: up to the last with a row */
 	int partial;         /* 1: only steps with a row took place, else all of them */
 	double low, high;    /* diameters that count */
@@ -75,6 +76,9 @@ enum ensemble_status ensemble_add(
 	struct ensemble *e, const struct particle_row *particle);
 /* A step that took place, with or without particles. */
 enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step);
+/* At least so many realisations and steps took place, with or without particles. */
+enum ensemble_status ensemble_simulated(
+	struct ensemble *e, double realisations, long steps);
 /* Once; the functions below are for closed ensembles. */
 enum ensemble_status ensemble_close(struct ensemble *e);
 /* The realisation that ENSEMBLE_APART or ENSEMBLE_CLASH refers to. */

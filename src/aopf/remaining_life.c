@@ -30,6 +30,11 @@ static const char *const models[] = { "average", "linear", "exponential", "power
 static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL, BANK_POWER,
 	BANK_RATE, BANK_SATURATING };
 
+/* The share of the lives below a quantile of 5 % is then known to
+ * sqrt(0.05 * 0.95 / 500) = 1 %.  Where a failure costs more than this number of
+ * replacements, the time of the lowest cost is before the first draw. */
+enum { DRAWS = 500 };
+
 double outlook_threshold = NAN;
 
 static double after = -INFINITY, horizon, skip;
@@ -78,7 +83,7 @@ struct opt outlook_plant_rows[] = {
 		"table of repairs and changes of load: t event [unit]", NULL, 0 },
 	{ 0, "mission", OPT_NUM, UNIT_TIME, &mission, 0, DBL_MAX, "T",
 		"add the probability of failure within this time", NULL, 0 },
-	{ 0, "cost-ratio", OPT_NUM, UNIT_NONE, &cost_ratio, 1, 1e9, "R",
+	{ 0, "cost-ratio", OPT_NUM, UNIT_NONE, &cost_ratio, 1, DRAWS, "R",
 		"add the optimal replacement time if a failure costs R replacements",
 		NULL, 0 },
 	{ 0, "alarm", OPT_LIST, UNIT_TIME, &alarms, 0, DBL_MAX, "T,T,...",
@@ -86,10 +91,6 @@ struct opt outlook_plant_rows[] = {
 		0 },
 	OPT_END
 };
-
-/* The share of the lives below a quantile of 5 % is then known to
- * sqrt(0.05 * 0.95 / 500) = 1 %. */
-enum { DRAWS = 500 };
 
 /* Of the literal model: a particle that needs more never reaches the threshold. */
 enum { LITERAL_STEPS = 1000 };
@@ -439,7 +440,8 @@ static int raise_alarm(int standing, double quantile)
  * from n ascending lives; INFINITY: never. */
 static double replacement(const double *life, int n, double age, double ratio)
 {
-	double best = INFINITY, at = INFINITY, area = 0, before = 0;
+	double best = INFINITY, area = 0, before = 0;
+	int at = -1, last = -1;
 
 	/* cost per time of a replacement just before the i-th failure */
 	for (int i = 0; i < n && isfinite(life[i]); i++) {
@@ -450,21 +452,28 @@ static double replacement(const double *life, int n, double age, double ratio)
 		cost = (1 + (ratio - 1) * failed) / (age + area);
 		if (cost < best) {
 			best = cost;
-			at = life[i];
+			at = i;
 		}
+		last = i;
 	}
-	/* If the cost still falls at the last failure, no replacement is advised. */
-	return at == before ? INFINITY : at;
+	/* If the cost still falls after the first failure and until the last one, no
+	 * replacement is advised. */
+	return at == last && at != 0 ? INFINITY : life[at];
 }
 
-/* Fills the cells of a life, ascending draws. */
-static void put_draws(struct outlook *o, const double *life, int n, double *cell)
+/* Fills the cells of a life, ascending draws.  Those beyond the horizon count as infinite
+ * only in its quantiles: what is decided must not depend on it. */
+static void put_draws(
+	struct outlook *o, const double *life, int n, double longest, double *cell)
 {
 	int ends = n, failures = 0;
 
-	for (int i = 0; i < levels.n; i++)
-		*cell++ = sorted_quantile(life, (size_t)n, levels.v[i]);
-	while (ends > 0 && isinf(life[ends - 1]))
+	for (int i = 0; i < levels.n; i++) {
+		double q = sorted_quantile(life, (size_t)n, levels.v[i]);
+
+		*cell++ = q <= longest ? q : INFINITY;
+	}
+	while (ends > 0 && !(life[ends - 1] <= longest))
 		ends--;
 	*cell++ = (double)(n - ends) / n;
 	while (failures < n && life[failures] <= mission / timeunit())
@@ -510,8 +519,8 @@ static void foresee(struct outlook *o, double *cell)
 	if (!(longest > 0))
 		longest = fleet ? INFINITY : 10 * (o->now.clock - o->now.from);
 	if (status == NUM_OK) {
-		metric_cut(life, (size_t)n, longest);
-		put_draws(o, life, n, cell);
+		metric_cut(life, (size_t)n, INFINITY);
+		put_draws(o, life, n, longest, cell);
 	}
 	free(life);
 }
@@ -521,7 +530,7 @@ static void put_failure(struct outlook *o, double *cell)
 {
 	double gone = 0;
 
-	put_draws(o, &gone, 1, cell);
+	put_draws(o, &gone, 1, INFINITY, cell);
 }
 
 static void put_factors(const struct outlook *o, double *cell)

@@ -315,7 +315,7 @@ int main(int argc, char **argv)
 	doubt.constant =
 		line_t(confidence, (double)(p.n - 1)) * deviation / sqrt((double)p.n);
 	fitted = line_fit(x, y, p.n, confidence, &l) == 0;
-	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
+	lack = fitted ? line_lack_of_fit(x, y, p.n) : NAN;
 	if (fitted) {
 		line_allow_unequal(
 			x, y, p.n, confidence, &l); /* small balls scatter more */

@@ -229,11 +229,12 @@ static void wear_record(struct run *run, struct record *r)
 	int last = fields_last(run->in);
 	struct scene c = { 0 };
 	struct worn_conditions conditions;
+	long k;
 
 	open_scene(run, r, &c);
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
-	for (long k = 1; k <= steps; k++) {
+	for (k = 1; k <= steps; k++) {
 		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
@@ -246,6 +247,8 @@ static void wear_record(struct run *run, struct record *r)
 		}
 		wear_step(run, &c, c.done + k);
 	}
+	if (k > 1)
+		worn_end(run->out, r->realisation, c.done + k - 1);
 }
 
 static void warn_of_edge(struct run *run)

@@ -412,6 +412,13 @@ void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_st
 		put_surface(&w->surface, c, s);
 }
 
+void worn_end(struct worn *w, long realisation, long step)
+{
+	/* all of its steps or the last ones may have no particle */
+	table_comment(w->particles, "realisation", "%ld", realisation);
+	table_comment(w->particles, "last_step", "%ld", step);
+}
+
 void worn_close(struct worn *w)
 {
 	table_done(w->particles);

@@ -61,6 +61,8 @@ int worn_takes_heights(void);
 void worn_begin(
 	struct worn *w, const struct record *r, const struct worn_conditions *conditions);
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s);
+/* The realisation has been worn up to this step. */
+void worn_end(struct worn *w, long realisation, long step);
 void worn_close(struct worn *w);
 
 #endif

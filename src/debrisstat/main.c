@@ -3,12 +3,14 @@
 #include "cli/opt.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "io/input.h"
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "stats/estimates.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum output { FITS, STEPS, SIZES, ASPECTS };
 static const char *const outputs[] = { "fits", "steps", "sizes", "aspects", NULL };
@@ -175,6 +177,28 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
+/* What was simulated, also where nothing was worn off, as the comments tell. */
+struct simulated {
+	double highest, realisations, steps;
+};
+
+/* A realisation that occurs again, with another step, is not higher than those before. */
+static void take_comment(void *to, const char *key, const char *value)
+{
+	struct simulated *s = to;
+	char *end;
+	double n = strtod(value, &end);
+
+	if (end == value || *end || !(n >= 0))
+		return;
+	if (strcmp(key, "last_step") == 0 && n <= 1e6) {
+		s->steps = fmax(s->steps, n);
+	} else if (strcmp(key, "realisation") == 0 && n > s->highest) {
+		s->highest = n;
+		s->realisations++;
+	}
+}
+
 /* What a table states of its study; nan: nothing. */
 struct study {
 	double area;     /* nominal, m2 */
@@ -184,7 +208,9 @@ struct study {
 static void read_particles(
 	struct ensemble *e, const char *path, struct study *study, char **cmd)
 {
-	struct table_in *t = table_open(path);
+	struct simulated simulated = { .highest = -1 };
+	struct table_in *t =
+		table_with_comments(input_open(path), take_comment, &simulated);
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
 	long last = 0;
@@ -209,6 +235,10 @@ static void read_particles(
 	}
 	read_summary(&summary, e, LONG_MAX);
 	last = summary.last > last ? summary.last : last;
+	if (!summary.table) {
+		last = (long)fmax((double)last, simulated.steps);
+		check(e, ensemble_simulated(e, simulated.realisations, last));
+	}
 	/* Steps that did not take place wore nothing off, which is no result. */
 	if (range.n > 0 && range.v[range.n - 1] > (double)last)
 		die(EXIT_RUN, "--step: %s has no step after %ld%s", table_name(t), last,

@@ -1,6 +1,7 @@
 #include "fragments.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "io/input.h"
 #include "io/quantities.h"
 #include "pump_options.h"
 #include <math.h>
@@ -25,7 +26,30 @@ struct wear {
 	const char *file;                        /* as given */
 	int realisation, step, volume, diameter; /* columns */
 	int class;
+	long lowest, highest,
+		last_step; /* simulated, as the comments tell; -1: unknown */
 };
+
+/* What of a particle table was simulated, also where nothing was shed. */
+static void take_comment(void *to, const char *key, const char *value)
+{
+	struct wear *w = to;
+	int realisation = strcmp(key, "realisation") == 0;
+	char *end;
+	long n;
+
+	if (!realisation && strcmp(key, "last_step") != 0)
+		return;
+	n = strtol(value, &end, 10);
+	if (end == value || *end || n < 0 || (double)n > (realisation ? 1e15 : 1e6))
+		return;
+	if (!realisation) {
+		w->last_step = n > w->last_step ? n : w->last_step;
+		return;
+	}
+	w->lowest = w->highest < 0 || n < w->lowest ? n : w->lowest;
+	w->highest = n > w->highest ? n : w->highest;
+}
 
 static _Noreturn void apart(const struct partition *p, const char *file)
 {
@@ -128,7 +152,7 @@ static void read_wear(
 	char *file = xstrdup(option);
 	double pressure = NAN, area = -1;
 	int with_area;
-	struct wear w = { .file = file };
+	struct wear w = { .file = file, .lowest = -1, .highest = -1, .last_step = -1 };
 	struct physics told;
 	long part;
 	enum partition_status status;
@@ -145,7 +169,7 @@ static void read_wear(
 		die(EXIT_USAGE, "--wear %s: want a pressure above 0", option);
 	if (with_area && !(area > 0 && isfinite(area)))
 		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
-	w.table = table_open(file);
+	w.table = table_with_comments(input_open(file), take_comment, &w);
 	told = physics_of(w.table);
 	check_options(option, &told, pressure, distance);
 	if (isnan(pressure))
@@ -170,16 +194,23 @@ static void read_wear(
 		partition_part(p, w.class, part);
 		read_row(p, &w, row);
 	}
+	if (w.highest >= 0) {
+		partition_simulated(p, w.class, w.lowest, w.last_step);
+		partition_simulated(p, w.class, w.highest, w.last_step);
+	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
 	table_close(w.table);
 	free(file);
 }
 
+/* The relative standard error of equal volumes, which sums round. */
+static const double ROUNDING = 1e-14;
+
 /* 1 if the ensemble of a class contains no information on the uncertainty of its mean. */
 static int is_doubtful(const struct partition *p, int class, const char *file)
 {
-	double mean, n = partition_count(p, class, &mean);
+	double mean, error, n = partition_count(p, class, &mean, &error);
 
 	if (n < 2)
 		warn("%s: a single realisation: the uncertainty of its wear is unknown and not included",
@@ -187,7 +218,10 @@ static int is_doubtful(const struct partition *p, int class, const char *file)
 	else if (!(mean > 0))
 		warn("%s: none of %.0f realisations wore: its wear is assumed to be zero",
 			file, n);
-	return n < 2 || !(mean > 0);
+	else if (!(error > ROUNDING))
+		warn("%s: %.0f realisations of equal volume: the uncertainty of the wear is unknown and not included",
+			file, n);
+	return n < 2 || !(error > ROUNDING);
 }
 
 struct partition *fragments_read(

@@ -382,6 +382,11 @@ int main(int argc, char **argv)
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
 	e = draw_paths(p);
+	if (calibrations.n == 1) {
+		warn("--calibrate %s: a single earlier unit: how units differ is unknown and not included",
+			calibrations.v[0]);
+		status = EXIT_NOCONV;
+	}
 	state_check();
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)

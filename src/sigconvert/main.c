@@ -73,7 +73,7 @@ static void check_options(void)
 					   : "scale");
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale must not be 0");
-	if (start && !moment_parse(start, &moment))
+	if (start && (!moment_parse(start, &moment) || moment.date))
 		die(EXIT_USAGE,
 			"--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
 			start);
@@ -87,9 +87,37 @@ static void convert_table(const char *path, const struct recording_par *par)
 	text_close(in);
 }
 
+/* Raw samples do not state their type.  Integers, and numbers of the other byte order,
+ * have random exponents if taken for float64, or where their last bytes are 0 the least
+ * ones. */
+struct magnitudes {
+	double samples, huge, most;
+};
+
+static void measure(struct magnitudes *m, const double *x, size_t n)
+{
+	m->samples += (double)n;
+	for (size_t i = 0; i < n; i++) {
+		m->huge += fabs(x[i]) > 1e100;
+		m->most = fmax(m->most, fabs(x[i]));
+	}
+}
+
+static int is_absurd(const struct magnitudes *m)
+{
+	if (from != FROM_RAW ||
+		(m->huge <= 0.01 * m->samples && (m->most == 0 || m->most > 1e-100)))
+		return 0;
+	warn("%.2g of the samples are above 1e100, and the largest is %.2g: not "
+	     "little-endian float64?",
+		m->huge / m->samples, m->most);
+	return 1;
+}
+
 int main(int argc, char **argv)
 {
-	int operand = opt_parse(&prog, argc, argv);
+	int operand = opt_parse(&prog, argc, argv), absurd;
+	struct magnitudes magnitudes = { 0 };
 	struct recording_par par = { .from = (enum recording_from)from,
 		.rate = rate.n ? rate.v[0] : NAN,
 		.channels = (int)channels,
@@ -120,6 +148,7 @@ int main(int argc, char **argv)
 		out = recording_create((enum recording_to)to, &format);
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
+		measure(&magnitudes, x, n * (size_t)format.channels);
 		for (size_t i = 0; i < n * (size_t)format.channels; i++)
 			x[i] *= scale;
 		if (table)
@@ -139,5 +168,6 @@ int main(int argc, char **argv)
 		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
-	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);
+	absurd = is_absurd(&magnitudes);
+	return shell_done(clipped > 0 || absurd ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -59,12 +59,15 @@ static int zone_of(const char *s, char zone[8])
 
 int moment_parse(const char *s, struct moment *m)
 {
-	int year, month, day, hour, minute, second = 0;
+	int year, month, day, hour = 0, minute = 0, second = 0;
 
 	*m = (struct moment){ 0 };
 	if (!digits(&s, 4, &year) || !take(&s, "-") || !digits(&s, 2, &month) ||
-		!take(&s, "-") || !digits(&s, 2, &day) || !take(&s, "T ") ||
-		!digits(&s, 2, &hour) || !take(&s, ":") || !digits(&s, 2, &minute))
+		!take(&s, "-") || !digits(&s, 2, &day))
+		return 0;
+	m->date = !*s;
+	if (!m->date && (!take(&s, "T ") || !digits(&s, 2, &hour) || !take(&s, ":") ||
+				!digits(&s, 2, &minute)))
 		return 0;
 	if (take(&s, ":") && !digits(&s, 2, &second))
 		return 0;

@@ -72,34 +72,82 @@ static int next_line(struct text_in *t)
 	return 0;
 }
 
-static char *trimmed(char *s)
+static char *trimmed(char *s, const char *blank)
 {
 	char *end = s + strlen(s);
 
-	while (end > s && strchr(" \t\"", end[-1]))
+	while (end > s && strchr(blank, end[-1]))
 		*--end = '\0';
-	return s + strspn(s, " \t\"");
+	return s + strspn(s, blank);
+}
+
+/* The end of a quoted text that begins here, behind its quote; NULL if it has none.  A
+ * quote within is doubled (RFC 4180). */
+static char *behind_quoted(char *s)
+{
+	for (s++; *s && (*s != '"' || s[1] == '"'); s++)
+		s += *s == '"';
+	return *s ? s + 1 : NULL;
+}
+
+/* Removes the quotes of a quoted text that ends here. */
+static char *unquoted(char *s, const char *end)
+{
+	char *to = s;
+
+	for (const char *from = s + 1; from < end - 1; from++) {
+		from += *from == '"';
+		*to++ = *from;
+	}
+	*to = '\0';
+	return s;
 }
 
 /* Cuts the line; returns how many cells there are. */
 static int cut(const struct text_in *t, char *line, char **cell, int most)
 {
+	const char separator[] = { t->separator, t->separator == ' ' ? '\t' : '\0',
+		'\0' };
+	const char *blank = t->separator == '\t' ? " " : " \t";
 	int n = 0;
 
 	for (char *s = line; s && n < most;) {
-		char *next;
+		char *end, *next;
+		int quoted;
 
-		if (t->separator == ' ')
-			s += strspn(s, " \t");
+		s += strspn(s, blank);
 		if (t->separator == ' ' && !*s)
 			break;
-		next = t->separator == ' ' ? strpbrk(s, " \t") : strchr(s, t->separator);
-		if (next)
-			*next++ = '\0';
-		cell[n++] = trimmed(s);
+		quoted = *s == '"';
+		end = quoted ? behind_quoted(s) : s + strcspn(s, separator);
+		if (!end)
+			die(EXIT_RUN,
+				"%s: line %ld: a quoted cell has no end in this line",
+				t->name, t->number);
+		next = t->separator == ' ' ? end : end + strspn(end, blank);
+		if (*next && !strchr(separator, *next))
+			die(EXIT_RUN, "%s: line %ld: text behind a quoted cell", t->name,
+				t->number);
+		next = *next ? next + 1 : NULL;
+		*end = '\0';
+		cell[n++] =
+			quoted ? trimmed(unquoted(s, end), " \t") : trimmed(s, " \t\"");
 		s = next;
 	}
 	return n;
+}
+
+/* Whether the line has this text outside of quotes. */
+static int has(char *line, const char *text)
+{
+	for (char *s = line; *s;) {
+		char *end = *s == '"' ? behind_quoted(s) : NULL;
+
+		if (strncmp(s, text, strlen(text)) == 0)
+			return 1;
+		s = end ? end : s + 1;
+	}
+	return 0;
 }
 
 static int number(const struct text_in *t, char *s, double *v)
@@ -218,13 +266,13 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		equals = par->table ? strchr(name, '=') : NULL;
 		if (equals)
 			*equals = '\0';
-		cell = find(t, trimmed(equals ? equals + 1 : name));
+		cell = find(t, trimmed(equals ? equals + 1 : name, " \t\""));
 		if (cell < 0)
-			no_column(t, trimmed(equals ? equals + 1 : name));
+			no_column(t, trimmed(equals ? equals + 1 : name, " \t\""));
 		if (t->format.channels == t->cells)
 			die(EXIT_USAGE, "--columns: the table has only %d", t->cells);
 		renamed = equals != NULL;
-		take(t, cell, equals ? trimmed(name) : NULL);
+		take(t, cell, equals ? trimmed(name, " \t\"") : NULL);
 	}
 	if (t->time >= 0 && t->format.channels == 1 && !renamed)
 		strcpy(t->name_of[0], "y"); /* as in all series */
@@ -291,7 +339,7 @@ static double read_time(struct text_in *t, char *cell)
 	if (!isfinite(time))
 		die(EXIT_RUN,
 			"%s: line %ld: '%.40s' is not a time, want a number or a moment "
-			"like 2026-11-22T03:04:05",
+			"like 2026-11-22T03:04:05 or 2026-11-22",
 			t->name, t->number, cell);
 	digit = fmax(digit, 4e-16 * fabs(time));
 	if (t->rows == 0 && (t->nahead == 0 || digit < t->resolution))
@@ -331,11 +379,13 @@ static int read_cells(struct text_in *t)
 static double read_number(struct text_in *t, int c)
 {
 	char *cell = t->cell[t->taken[c]];
+	struct moment m;
 	double value;
 
 	if (!number(t, cell, &value))
-		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name,
-			t->number, t->heading[t->taken[c]], cell);
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
+			t->number, t->heading[t->taken[c]], cell,
+			moment_parse(cell, &m) ? ": specify --time" : "");
 	return value;
 }
 
@@ -492,12 +542,12 @@ struct text_in *text_open(struct input *in, const struct recording_par *par)
 	if (!next_line(t))
 		die(EXIT_RUN, "%s: no row", t->name);
 	/* "Diameter [um]" alone is one column. */
-	t->separator = strchr(t->line, '\t')   ? '\t'
-		       : strchr(t->line, ';')  ? ';'
-		       : strchr(t->line, ',')  ? ','
-		       : strstr(t->line, " [") ? '\n'
-		       : strstr(t->line, " (") ? '\n'
-					       : ' ';
+	t->separator = has(t->line, "\t")   ? '\t'
+		       : has(t->line, ";")  ? ';'
+		       : has(t->line, ",")  ? ','
+		       : has(t->line, " [") ? '\n'
+		       : has(t->line, " (") ? '\n'
+					    : ' ';
 	t->commas = t->separator != ',';
 	t->heading = xcalloc(strlen(t->line) + 2, sizeof *t->heading);
 	copy = xstrdup(t->line);

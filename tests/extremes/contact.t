@@ -291,7 +291,7 @@ done
 heights 8 8 '$x + $y ? 0 : "nan"'
 refused "a height that is not a number" 1 'height' press --pixel 1um --estar 1GPa --pressure 1MPa
 heights 8 8 '$x + $y ? 0 : 1e308 * ($x ? -1 : 1)'
-refused "a height of 1e308 m" 1 'precision' press --pixel 1um --estar 1GPa --pressure 1MPa
+refused "a height of 1e308 m" 1 'float64' press --pixel 1um --estar 1GPa --pressure 1MPa
 heights 8 8 '$x & 1 ? 1e200 : -1e200'
-refused "heights whose square overflows" 1 'precision' press --pixel 1um --estar 1GPa --pressure 1MPa
+refused "heights whose square overflows" 1 'float64' press --pixel 1um --estar 1GPa --pressure 1MPa
 done_testing

@@ -147,6 +147,40 @@ static int ascending(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
+/* Four sizes of 15 pulses whose scatter falls with the cube of the diameter, and 40, 10
+ * and 40 of which those in the middle scatter more. */
+static void check_fit(void)
+{
+	enum { N = 90, RUNS = 2000 };
+	static const double sd[] = { 4, 1, 0.25, 0.06 };
+	double x[N], y[N], found = 0, fitting = 0, middle = 0;
+
+	for (int run = 0; run < RUNS; run++) {
+		double normal[2];
+
+		for (int i = 0; i < 60; i++) {
+			philox_normal2(6, 0, RNG_NOISE, (uint64_t)(run * N + i), normal);
+			x[i] = i / 15;
+			y[i] = 2 + 3 * x[i] + sd[i / 15] * normal[0];
+		}
+		fitting += line_lack_of_fit(x, y, 60) < 0.01;
+		for (int i = 30; i < 45; i++)
+			y[i] += 0.8;
+		found += line_lack_of_fit(x, y, 60) < 0.01;
+		for (int i = 0; i < N; i++) {
+			philox_normal2(7, 0, RNG_NOISE, (uint64_t)(run * N + i), normal);
+			x[i] = (i >= 40) + (i >= 50);
+			y[i] = (x[i] == 1 ? 5 : 1) * normal[0];
+		}
+		middle += line_lack_of_fit(x, y, N) < 0.01;
+	}
+	/* sd 0.2 %; with a common scatter 1.3 and 28 % are rejected, and 3 % found */
+	near(fitting / RUNS, 0.01, 0.01,
+		"the test of fit allows for scatter that falls with the size");
+	near(middle / RUNS, 0.01, 0.01, "it allows for a size that scatters more");
+	near(found / RUNS, 1, 0.05, "it finds one that is off by little of all scatter");
+}
+
 static void check_lines(void)
 {
 	enum { N = 60, RUNS = 2000 };
@@ -165,7 +199,7 @@ static void check_lines(void)
 		}
 		line_fit(x, y, N, 0.9, &l);
 		held += fabs(l.slope - 3) < l.t * l.slope_se;
-		lack += line_lack_of_fit(x, y, N, &l) < 0.1;
+		lack += line_lack_of_fit(x, y, N) < 0.1;
 		slope += line_slope_p(&l, 3) < 0.1;
 		for (int i = 0; i < N; i++)
 			y[i] -= 3 * x[i];
@@ -368,6 +402,7 @@ int main(void)
 	check_coverage(30);
 	check_detection();
 	check_codes();
+	check_fit();
 	check_lines();
 	check_unequal();
 	check_few();

@@ -2,6 +2,7 @@
 #include "life/pair/paths.h"
 #include "num/passage.h"
 #include "num/rng.h"
+#include "num/running.h"
 #include "num/select.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>
@@ -9,8 +10,9 @@
 
 struct paths {
 	struct paths_par par;
-	struct path *path; /* NULL without fragments */
-	double mean;       /* of the component per step, by all fragments */
+	struct path *path;   /* NULL without fragments */
+	double mean;         /* of the component per step, by all fragments */
+	struct running logs; /* of the slopes of earlier units */
 	gsl_rng *rng;
 };
 
@@ -20,6 +22,19 @@ static double draw_rate(double mean, double variance, gsl_rng *rng)
 	if (!(variance > 0) || !(mean > 0))
 		return mean;
 	return gsl_ran_gamma(rng, mean * mean / variance, variance / mean);
+}
+
+/* The slope of another unit, as those of n earlier ones tell if the logarithms of all are
+ * normal: the prediction has Student's t of n - 1 degrees.  One unit does not tell how
+ * units differ.  With few of them t may be of any size: no infinite rates. */
+static double draw_slope(const struct running *logs, gsl_rng *rng)
+{
+	double n = logs->n, t;
+
+	if (n < 2)
+		return exp(logs->mean);
+	t = gsl_ran_tdist(rng, n - 1) * sqrt(running_variance(logs) * (1 + 1 / n));
+	return exp(logs->mean + fmax(-200, fmin(t, 200)));
 }
 
 /* The draws of path i, in this order. */
@@ -38,12 +53,8 @@ static void draw_path(struct paths *e, struct partition *partition, long i)
 		path->wear.mean =
 			draw_rate(path->wear.mean, path->wear.life_variance, e->rng);
 	path->step_time = par->step_time;
-	if (par->nslopes) {
-		unsigned long unit =
-			gsl_rng_uniform_int(e->rng, (unsigned long)par->nslopes);
-
-		path->step_time = e->mean / par->area / par->slope[unit];
-	}
+	if (par->nslopes)
+		path->step_time = e->mean / par->area / draw_slope(&e->logs, e->rng);
 }
 
 struct paths *paths_new(const struct paths_par *par, struct partition *partition)
@@ -65,6 +76,8 @@ struct paths *paths_new(const struct paths_par *par, struct partition *partition
 		return e;
 	partition_estimate(partition, par->parts, &all);
 	e->mean = all.mean;
+	for (int k = 0; k < par->nslopes; k++)
+		running_add(&e->logs, log(par->slope[k]));
 	for (long i = 0; i < par->count; i++) {
 		draw_path(e, partition, i);
 		if (par->progress)

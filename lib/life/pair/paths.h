@@ -37,7 +37,7 @@ struct paths_par {
 	int cumulative;   /* 1: the share is of all particles so far, 0: of one step */
 	double step_time; /* duration of a step, s; NAN: from slopes or the state */
 	const double
-		*slope; /* gap per s of earlier units, of which each path draws one */
+		*slope; /* gap per s of earlier units, by which each path draws its own */
 	int nslopes;
 	void (*progress)(long done, long paths); /* called after each draw; or NULL */
 };

@@ -4,6 +4,7 @@
 #include "num/running.h"
 #include "num/status.h"
 #include <gsl/gsl_randist.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,7 @@ struct class
 	double pressure, area; /* own area after partition_close() */
 	struct realisations *reader;
 	long last_realisation, last_step; /* of the row before; -1: none */
-	long lowest, highest;             /* first and last realisation with rows */
+	long lowest, highest;             /* first and last realisation */
 	/* Over realisations: volume, of the steps that count for the rate. */
 	struct running volume;
 	struct regression steps; /* of the volume on the number of steps */
@@ -103,6 +104,12 @@ static enum num_status group_sizes(
 	return NUM_OK;
 }
 
+static void widen(struct class *c, long realisation)
+{
+	c->lowest = realisation < c->lowest ? realisation : c->lowest;
+	c->highest = realisation > c->highest ? realisation : c->highest;
+}
+
 /* Takes the whole history of one realisation; its cells are sorted by step. */
 static enum num_status take_history(
 	void *to, const struct realisation_cell *cell, size_t n)
@@ -126,10 +133,7 @@ static enum num_status take_history(
 		volume += here;
 		steps++;
 	}
-	if (c->nhistories == 0)
-		c->lowest = cell->realisation;
-	c->lowest = cell->realisation < c->lowest ? cell->realisation : c->lowest;
-	c->highest = cell->realisation > c->highest ? cell->realisation : c->highest;
+	widen(c, cell->realisation);
 	running_add(&c->volume, volume);
 	regression_add(&c->steps, steps, volume);
 	if (c->owner->sizes && group_sizes(c, cell, n))
@@ -149,6 +153,8 @@ enum partition_status partition_class(
 		.sparse = sparse,
 		.pressure = pressure,
 		.area = area,
+		.lowest = LONG_MAX,
+		.highest = -1,
 		.last_realisation = -1 };
 	c->reader = realisations_new(REALISATIONS_ROOM, take_history, c);
 	if (!c->reader)
@@ -178,6 +184,13 @@ void partition_part(struct partition *p, int class, long part)
 	p->class[class].part = part;
 }
 
+void partition_simulated(struct partition *p, int class, long realisation, long step)
+{
+	widen(&p->class[class], realisation);
+	if (step > p->steps)
+		p->steps = step;
+}
+
 enum partition_status partition_fragment(struct partition *p, int class, long realisation,
 	long step, double volume, double count, double large)
 {
@@ -202,7 +215,7 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 {
 	double empty = 0, scatter;
 
-	if (c->nhistories == 0)
+	if (c->highest < 0)
 		return PARTITION_EMPTY;
 	if (c->sparse) {
 		double steps = fmax((double)(p->steps - p->first_step) + 1, 0);
@@ -315,9 +328,10 @@ long partition_realisation(const struct partition *p)
 	return p->culprit_realisation;
 }
 
-double partition_count(const struct partition *p, int class, double *mean)
+double partition_count(const struct partition *p, int class, double *mean, double *error)
 {
 	*mean = p->class[class].all.mean;
+	*error = p->class[class].error;
 	return p->class[class].realisations;
 }
 

@@ -86,6 +86,10 @@ enum partition_status partition_class(
  * realisation is in one part; else the ensembles of two studies have the same numbers. */
 void partition_part(struct partition *p, int class, long part);
 
+/* A sparse class has at least this realisation and this step, though nothing may have
+ * been shed. */
+void partition_simulated(struct partition *p, int class, long realisation, long step);
+
 /* Adds the wear of one realisation in one step (from 1): volume worn (m3), number of
  * particles, and number of those of at least the critical size.  Consecutive calls for
  * the same realisation and step add up (particle tables); others return PARTITION_TWICE.
@@ -102,9 +106,9 @@ enum partition_status partition_close(
 int partition_culprit(const struct partition *p);
 /* The realisation that PARTITION_TWICE or PARTITION_APART concerns. */
 long partition_realisation(const struct partition *p);
-/* Number of realisations of a class, including those that shed nothing, and their mean
- * volume per step, m3.  The partition must be closed. */
-double partition_count(const struct partition *p, int class, double *mean);
+/* Number of realisations of a class, including those that shed nothing, their mean volume
+ * per step, m3, and its relative standard error.  The partition must be closed. */
+double partition_count(const struct partition *p, int class, double *mean, double *error);
 
 /* Wear of the component per step. */
 struct partition_wear {
