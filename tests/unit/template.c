@@ -144,6 +144,14 @@ int main(void)
 	ok(t.left > 0.02, "and is none of the known ones (they leave %.2f)", t.left);
 	template_clear(&t);
 
+	/* Of a fifth of that size: the mean alone, smoothed, has noise of 8e-4 of its
+	 * energy.  Half of it is where the pulse has no power. */
+	make_record(odd, 0.2);
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, -1) == NUM_OK &&
+			t.shape && least_difference(&t, odd, 1) < 6e-4,
+		"the shape of small pulses is right to half of the noise in their mean");
+	template_clear(&t);
+
 	/* One event has 24 times that noise, and its own size tells more or less. */
 	make_record(odd, 1);
 	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 1, 20, 0) == NUM_OK &&

@@ -460,33 +460,37 @@ static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 								  : SEPARATE_NO_LAG;
 }
 
-/* SWAPPED if pulses describe the record with its channels exchanged: among few pulses two
- * particles may look like one that passes sensor 2 first.  Otherwise learns as if none
- * did. */
+/* SWAPPED if pulses describe the record with its channels exchanged, and better than as
+ * they are: among few pulses two particles may look like one that passes sensor 2 first.
+ * Otherwise learns as if none did. */
 static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
 	struct calibrate_par known = *par;
+	struct calibration exchanged;
 	enum separate_status status;
-	double before;
+	int describes;
 
 	known.in_order = 1;
 	known.gain = 1 / par->gain;
 	known.hidden[0] = par->hidden[1];
 	known.hidden[1] = par->hidden[0];
-	status = calibrate_as(&known, x2, x1, n, c);
-	if (status == SEPARATE_OK) {
-		status = learn_describes(c) ? SEPARATE_SWAPPED : SEPARATE_NO_LAG;
-		calibration_clear(c);
-	}
-	if (status == SEPARATE_SWAPPED || status == SEPARATE_MEMORY)
+	status = calibrate_as(&known, x2, x1, n, &exchanged);
+	if (status == SEPARATE_MEMORY)
 		return status;
+	describes = status == SEPARATE_OK && learn_describes(&exchanged);
 	known = *par;
 	known.in_order = 1;
-	before = c->work;
-	known.most -= before;
+	known.most -= exchanged.work;
 	status = calibrate(&known, x1, x2, n, c);
-	c->work += before;
+	c->work += exchanged.work;
+	if (describes && status != SEPARATE_MEMORY &&
+		(status != SEPARATE_OK || exchanged.penalised < c->penalised)) {
+		if (status == SEPARATE_OK)
+			calibration_clear(c);
+		status = SEPARATE_SWAPPED;
+	}
+	calibration_clear(&exchanged);
 	return status;
 }
 

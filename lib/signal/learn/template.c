@@ -3,6 +3,7 @@
 #include "num/dot.h"
 #include "num/select.h"
 #include "num/sigmas.h"
+#include "num/wiener.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -719,6 +720,9 @@ static enum num_status search_template(struct search *s, int single, struct temp
 			for (int c = 0; c < 2; c++)
 				s->event[i].a[c] = -s->event[i].a[c];
 	}
+	if (wiener_filter(s->p, 2 * (size_t)s->half + 1, s->scatter * s->scatter, s->T) !=
+		NUM_OK)
+		return NUM_MEMORY;
 	reach = template_reach(s);
 	if (match(s, reach, t, &shift) != NUM_OK ||
 		make_shape(s, reach, shift, t) != NUM_OK)
