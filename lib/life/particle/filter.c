@@ -207,18 +207,12 @@ static double weigh(struct filter *f, double y, double noise, double near)
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * (1 / noise),
+		lanes at = lanes_load(x + i, width), z = (y - at) * (1 / noise),
 		      l = 0.5 * (near * near - z * z),
 		      w = lanes_load(weight + i, width) *
 			  lanes_if(l > -FAR, lanes_exp(l));
 
 		lanes_store(weight + i, w, width);
-	}
-	/* in a loop of its own, so that several exponentials overlap in the processor */
-	for (size_t i = 0; i < n; i += 2) {
-		int width = n - i < 2 ? 1 : 2;
-		lanes w = lanes_load(weight + i, width), at = lanes_load(x + i, width);
-
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
