@@ -20,12 +20,6 @@ enum { MODEL = 3 };
  * those of outliers .178, .147 and .135. */
 static const double OUTLYING = 10;
 
-/* A past row of all particles, and the gap before it. */
-struct lag {
-	struct filter_step step;
-	double gap;
-};
-
 /* The sums of a grey fit: x about a centre, u the integral of the states from the oldest
  * on. */
 struct sums {
@@ -37,7 +31,6 @@ struct adaptive {
 	struct draw *draw, *draw_paths;
 	struct filter *filter;
 	struct order *order;
-	struct lag *lag;    /* [depth] */
 	double *mean;       /* [N] prior means */
 	struct sums *sums;  /* [N] */
 	double *past, *gap; /* the last rows, oldest first: values and gaps before */
@@ -70,12 +63,11 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
-	a->lag = calloc(depth, sizeof *a->lag);
 	a->mean = calloc(par->filter.particles, sizeof *a->mean);
 	a->sums = calloc(par->filter.particles, sizeof *a->sums);
 	a->past = calloc(2 * depth, sizeof *a->past);
-	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->mean ||
-		!a->sums || !a->past) {
+	if (!a->draw_paths || !a->filter || !a->order || !a->mean || !a->sums ||
+		!a->past) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -91,7 +83,6 @@ void adaptive_free(struct adaptive *a)
 	draw_free(a->draw_paths);
 	filter_free(a->filter);
 	order_free(a->order);
-	free(a->lag);
 	free(a->mean);
 	free(a->sums);
 	free(a->past);
@@ -117,42 +108,54 @@ struct adaptive_counts adaptive_counts(const struct adaptive *a)
 		a->restarts, order_counts(a->order) };
 }
 
-/* The sums over count rows for the states of the newest one.  States with a common
- * ancestor share its sums.  In place, from the end: ancestors ascend from 0 in steps of 0
- * or 1, so that none lies after its descendant. */
-static void sum_rows(struct adaptive *a, int count, double centre)
+/* The gap before the states of lag steps ago; newest_gap: of the last, behind those
+ * before it, NULL: all are h. */
+static double gap_at(const double *newest_gap, int lag, double h)
 {
-	for (int k = count; k-- > 0;)
-		for (size_t i = a->lag[k].step.n; i-- > 0;) {
-			struct sums s = { 0 };
-			double x = a->lag[k].step.x[i], part = x * a->lag[k].gap, u,
-			       off = x - centre;
-
-			if (k + 1 < count)
-				s = a->sums[a->lag[k + 1].step.ancestor[i]];
-			u = s.tail + 0.5 * part;
-			a->sums[i] = (struct sums){ s.tail + part, s.u + u, s.x + off,
-				s.uu + u * u, s.ux + u * off };
-		}
+	return newest_gap ? newest_gap[-lag] : h;
 }
 
-/* The grey forecast, h after the newest of count rows, of every particle.  An exponential
- * through states that cannot be distinguished from 0 is meaningless, and so is one beyond
- * grey_reach(): such states keep their mean. */
-static void forecast(struct adaptive *a, int count, double h, double noise)
+/* Adds a row to the sums over older rows, NULL: there are none.  States with a common
+ * ancestor share its sums.  In place, from the end: ancestors ascend from 0 in steps of 0
+ * or 1, so that none lies after its descendant. */
+static void add_row(struct sums *sums, const struct filter_step *row,
+	const struct filter_step *older, double gap, double centre)
 {
-	const struct filter_step *newest = &a->lag[0].step;
+	for (size_t i = row->n; i-- > 0;) {
+		struct sums s = older ? sums[older->ancestor[i]] : (struct sums){ 0 };
+		double part = row->x[i] * gap, u = s.tail + 0.5 * part,
+		       off = row->x[i] - centre;
+
+		sums[i] = (struct sums){ s.tail + part, s.u + u, s.x + off, s.uu + u * u,
+			s.ux + u * off };
+	}
+}
+
+/* Prior mean of every particle: the grey forecast, h after the newest, from its own last
+ * p states.  The oldest of them only starts the first interval (see grey.h).  An
+ * exponential through states that cannot be distinguished from 0 is meaningless, and so
+ * is one beyond grey_reach(): such states keep their mean. */
+static void forecast_particles(struct adaptive *a, const struct filter *f,
+	const double *newest_gap, int p, double h, double noise)
+{
+	struct filter_step newest = filter_step(f, 0), older;
 	size_t n = a->par.filter.particles;
-	double centre = newest->x[0], share = 1.0 / count, end = h, most, reach,
+	double centre = newest.x[0], share = 1.0 / (p - 1), end = h, most, reach,
 	       *mean = a->mean;
 
-	sum_rows(a, count, centre);
-	for (int k = 0; k < count; k++)
-		end += a->lag[k].gap;
-	most = grey_rate_limit(count, end - h);
+	for (int k = p - 1; k-- > 0;) {
+		struct filter_step row = filter_step(f, k);
+
+		add_row(a->sums, &row, k < p - 2 ? &older : NULL,
+			gap_at(newest_gap, k, h), centre);
+		older = row;
+	}
+	for (int k = 0; k < p - 1; k++)
+		end += gap_at(newest_gap, k, h);
+	most = grey_rate_limit(p - 1, end - h);
 	reach = grey_reach(most, h);
-	for (size_t i = 0; i < newest->n; i += 2) {
-		int width = newest->n - i < 2 ? 1 : 2;
+	for (size_t i = 0; i < newest.n; i += 2) {
+		int width = newest.n - i < 2 ? 1 : 2;
 		const struct sums *s = &a->sums[i], *t = s + width - 1;
 		lanes u = share * (lanes){ s->u, t->u },
 		      x = share * (lanes){ s->x, t->x }, tail = { s->tail, t->tail },
@@ -172,20 +175,8 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 				middle, next),
 			width);
 	}
-	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
-		mean[i] = mean[newest->ancestor[i]];
-}
-
-/* Prior mean of every particle: the grey forecast from its own last p states.  The oldest
- * state of the window only starts the first interval (see grey.h).  newest_gap: of those
- * between the states, NULL: all are h. */
-static void forecast_particles(struct adaptive *a, const struct filter *f,
-	const double *newest_gap, int p, double h, double noise)
-{
-	for (int k = 0; k < p - 1; k++)
-		a->lag[k] = (struct lag){ filter_step(f, k),
-			newest_gap ? newest_gap[-k] : h };
-	forecast(a, p - 1, h, noise);
+	for (size_t i = newest.n < n ? n : 0; i-- > 0;)
+		mean[i] = mean[newest.ancestor[i]];
 }
 
 static void hold_particles(struct adaptive *a)
