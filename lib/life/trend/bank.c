@@ -601,7 +601,7 @@ static double usual_gap(const struct bank *b)
 {
 	double total = b->age + b->idle / b->unit - b->longest;
 
-	return total > 0 ? (b->squares - b->longest * b->longest) / total : b->gap;
+	return (b->squares - b->longest * b->longest) / total;
 }
 
 /* The next gap, halts included, if rows come at a constant ratio of their ages, as they
