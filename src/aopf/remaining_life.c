@@ -149,8 +149,8 @@ struct outlook {
 
 void outlook_check(int bare)
 {
-	static const char *const of_lives[] = { "direction", "persist", "skip", "model",
-		"horizon", "after", "levels", "weights", "covariate", "clock" };
+	static const char *const of_bank[] = { "weights", "events", "covariate",
+		"fleet" };
 
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
@@ -164,17 +164,13 @@ void outlook_check(int bare)
 	if (isnan(outlook_threshold) && (bare || opt_any_given(outlook_plant_rows)))
 		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
-	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
-		if (isnan(outlook_threshold) && opt_given(of_lives[i]))
-			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
-	if ((weights || events_file || covariates_count() > 0 || fleet_file) &&
-		model >= GREY)
-		die(EXIT_USAGE, "--%s is not for --model %s",
-			weights                  ? "weights"
-			: events_file            ? "events"
-			: covariates_count() > 0 ? "covariate"
-						 : "fleet",
-			models[model]);
+	opt_require("threshold",
+		"direction persist skip model horizon after levels weights covariate "
+		"clock");
+	for (size_t i = 0; i < sizeof of_bank / sizeof *of_bank; i++)
+		if (model >= GREY && opt_given(of_bank[i]))
+			die(EXIT_USAGE, "--%s is not for --model %s", of_bank[i],
+				models[model]);
 	covariates_check();
 	if (bare && model >= GREY)
 		die(EXIT_USAGE,
