@@ -165,13 +165,8 @@ void filter_predict(struct filter *f, const double *mean, double sigma)
 	double *x = push_step(f);
 
 	draw_normals(f->draw, x, f->par.particles);
-	for (size_t i = 0; i < f->par.particles; i += 2) {
-		int width = f->par.particles - i < 2 ? 1 : 2;
-
-		lanes_store(x + i,
-			lanes_load(mean + i, width) + sigma * lanes_load(x + i, width),
-			width);
-	}
+	for (size_t i = 0; i < f->par.particles; i++)
+		x[i] = mean[i] + sigma * x[i];
 	find_moments(f);
 }
 
@@ -184,16 +179,15 @@ struct filter_now filter_now(const struct filter *f)
 static double nearest(const struct filter *f, double y, double noise)
 {
 	const double *x = states_of(f, 0);
-	lanes least = lanes_all(INFINITY);
+	double least = INFINITY;
 
-	for (size_t i = 0; i < f->par.particles; i += 2) {
-		int width = f->par.particles - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * (1 / noise);
+	for (size_t i = 0; i < f->par.particles; i++) {
+		double z = fabs((y - x[i]) * (1 / noise));
 
-		least = lanes_min(least, lanes_pick(lanes_load(f->weight + i, width) > 0,
-						 lanes_abs(z), least));
+		if (f->weight[i] > 0 && z < least)
+			least = z;
 	}
-	return fmin(least[0], least[1]);
+	return least;
 }
 
 /* Multiplies the weights by the likelihoods of y over that of the nearest particle, whose
