@@ -86,20 +86,41 @@ char *xstrdup(const char *s)
 	return memcpy(xcalloc(size, 1), s, size);
 }
 
+/* Behind a text, which is freed or NULL. */
+static char *print_behind(char *text, const char *format, va_list ap)
+{
+	size_t length = text ? strlen(text) : 0;
+	va_list again;
+	int n;
+
+	va_copy(again, ap);
+	n = vsnprintf(NULL, 0, format, again);
+	va_end(again);
+	if (n < 0)
+		die(EXIT_RUN, "cannot format a message");
+	text = xrealloc(text, length + (size_t)n + 1, 1);
+	vsnprintf(text + length, (size_t)n + 1, format, ap);
+	return text;
+}
+
 char *xprintf(const char *format, ...)
 {
 	va_list ap;
 	char *s;
-	int n;
 
 	va_start(ap, format);
-	n = vsnprintf(NULL, 0, format, ap);
+	s = print_behind(NULL, format, ap);
 	va_end(ap);
-	if (n < 0)
-		die(EXIT_RUN, "cannot format a message");
-	s = xcalloc((size_t)n + 1, 1);
+	return s;
+}
+
+char *xappend(char *text, const char *format, ...)
+{
+	va_list ap;
+	char *s;
+
 	va_start(ap, format);
-	vsnprintf(s, (size_t)n + 1, format, ap);
+	s = print_behind(text, format, ap);
 	va_end(ap);
 	return s;
 }

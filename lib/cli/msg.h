@@ -33,5 +33,7 @@ void *xrealloc(void *p, size_t count, size_t size);
 char *xstrdup(const char *s);
 /* printf into fresh memory. */
 char *xprintf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* printf behind a text, which is freed or NULL, into fresh memory. */
+char *xappend(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -440,15 +440,9 @@ static char *annotation(const struct signal_format *format)
 		{ "start", format->start } };
 	char *text = xprintf("%s", "");
 
-	for (size_t i = 0; i < sizeof line / sizeof *line; i++) {
-		char *longer;
-
-		if (!line[i][1])
-			continue;
-		longer = xprintf("%s%s %s\n", text, line[i][0], line[i][1]);
-		free(text);
-		text = longer;
-	}
+	for (size_t i = 0; i < sizeof line / sizeof *line; i++)
+		if (line[i][1])
+			text = xappend(text, "%s %s\n", line[i][0], line[i][1]);
 	return text;
 }
 

@@ -392,12 +392,8 @@ static char *list_columns(const struct table_in *t)
 {
 	char *list = xstrdup("");
 
-	for (int i = 0; i < t->ncolumns && i < 8; i++) {
-		char *longer = xprintf("%s%s'%.40s'", list, i ? " " : "", t->column[i]);
-
-		free(list);
-		list = longer;
-	}
+	for (int i = 0; i < t->ncolumns && i < 8; i++)
+		list = xappend(list, "%s'%.40s'", i ? " " : "", t->column[i]);
 	return list;
 }
 
@@ -629,7 +625,7 @@ static void write_head(struct table_out *t)
 
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 {
-	char *value, *escaped, *line, *longer;
+	char *value, *escaped, *line;
 	const char *before;
 	va_list ap;
 	int n;
@@ -652,13 +648,10 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 		write_head(t); /* with the first pipeline, even if it wrote no row */
 	keys_set(&t->written, key, escaped);
 	line = xprintf("# %s: %s\n", key, escaped);
-	if (t->columns || !t->ncolumns) {
-		longer = xprintf("%s%s", t->head, line);
-		free(t->head);
-		t->head = longer;
-	} else {
+	if (t->columns || !t->ncolumns)
+		t->head = xappend(t->head, "%s", line);
+	else
 		put_line(t, line, strlen(line));
-	}
 	free(line);
 	free(escaped);
 }

@@ -126,6 +126,7 @@ static int n_events;
 
 struct outlook {
 	const char *unit; /* its name */
+	char *prefix;     /* of messages, tells the name if there is one */
 	struct adaptive *filter;
 	struct bank *bank; /* NULL before the first value, for GREY and for LITERAL */
 	struct outlook_state {
@@ -149,8 +150,8 @@ struct outlook {
 
 void outlook_check(int bare)
 {
-	static const char *const of_lives[] = { "direction", "persist", "skip", "model",
-		"horizon", "after", "levels", "weights", "covariate", "clock" };
+	static const char *const of_bank[] = { "weights", "events", "covariate",
+		"fleet" };
 
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
@@ -164,17 +165,13 @@ void outlook_check(int bare)
 	if (isnan(outlook_threshold) && (bare || opt_any_given(outlook_plant_rows)))
 		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
-	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
-		if (isnan(outlook_threshold) && opt_given(of_lives[i]))
-			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
-	if ((weights || events_file || covariates_count() > 0 || fleet_file) &&
-		model >= GREY)
-		die(EXIT_USAGE, "--%s is not for --model %s",
-			weights                  ? "weights"
-			: events_file            ? "events"
-			: covariates_count() > 0 ? "covariate"
-						 : "fleet",
-			models[model]);
+	opt_require("threshold",
+		"direction persist skip model horizon after levels weights covariate "
+		"clock");
+	for (size_t i = 0; i < sizeof of_bank / sizeof *of_bank; i++)
+		if (model >= GREY && opt_given(of_bank[i]))
+			die(EXIT_USAGE, "--%s is not for --model %s", of_bank[i],
+				models[model]);
 	covariates_check();
 	if (bare && model >= GREY)
 		die(EXIT_USAGE,
@@ -322,6 +319,7 @@ struct outlook *outlook_new(const char *unit, struct adaptive *filter)
 	struct outlook *o = xcalloc(1, sizeof *o);
 
 	o->unit = unit;
+	o->prefix = xprintf("%s%s", unit, *unit ? ": " : "");
 	o->filter = filter;
 	o->now.heeded = o->now.early = -INFINITY;
 	o->now.from = NAN;
@@ -330,8 +328,10 @@ struct outlook *outlook_new(const char *unit, struct adaptive *filter)
 
 void outlook_free(struct outlook *o)
 {
-	if (o)
-		bank_free(o->bank);
+	if (!o)
+		return;
+	bank_free(o->bank);
+	free(o->prefix);
 	free(o);
 }
 
@@ -614,21 +614,18 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 static int check_direction(const struct outlook *o)
 {
 	const struct bank *b = o->bank;
-	const char *unit = o->unit;
 
 	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
-		warn("%s%sthe values recede from the threshold, and no life ends: "
+		warn("%sthe values recede from the threshold, and no life ends: "
 		     "--direction %s is for the other way",
-			unit, *unit ? ": " : "",
-			directions[o->now.direction > 0 ? DOWN : UP]);
+			o->prefix, directions[o->now.direction > 0 ? DOWN : UP]);
 		return 1;
 	}
 	if (direction != AUTO || !o->now.failed || o->now.healthy > 2)
 		return 0;
-	warn("%s%sthe unit fails after value %ld if the threshold is approached from %s, "
+	warn("%sthe unit fails after value %ld if the threshold is approached from %s, "
 	     "as the first value tells: --direction %s is for the other way",
-		unit, *unit ? ": " : "", o->now.healthy,
-		o->now.direction > 0 ? "below" : "above",
+		o->prefix, o->now.healthy, o->now.direction > 0 ? "below" : "above",
 		directions[o->now.direction > 0 ? DOWN : UP]);
 	return 1;
 }
@@ -646,33 +643,31 @@ int outlook_settle(const struct outlook *o)
 		    stopped || alternates;
 
 	if (doubtful)
-		warn("%s%sno life is predicted after the last rows: their unit or the gain "
+		warn("%sno life is predicted after the last rows: their unit or the gain "
 		     "may have changed, or a counter has wrapped",
-			unit, *unit ? ": " : "");
+			o->prefix);
 	if (alternates)
-		warn("%s%sthe values alternate between two courses: those of two machines are "
+		warn("%sthe values alternate between two courses: those of two machines are "
 		     "told apart by --unit",
-			unit, *unit ? ": " : "");
+			o->prefix);
 	if (stuck)
-		warn("%s%sthe last values are equal: the sensor sticks or is at the end of its "
+		warn("%sthe last values are equal: the sensor sticks or is at the end of its "
 		     "range, and the lives continue the wear before",
-			unit, *unit ? ": " : "");
+			o->prefix);
 	if (stopped)
-		warn("%s%sthe values have ceased to approach the threshold: the wear rests, or "
+		warn("%sthe values have ceased to approach the threshold: the wear rests, or "
 		     "the sensor is at the end of its range",
-			unit, *unit ? ": " : "");
+			o->prefix);
 	if (o->now.range > 0)
-		warn("%s%sthe last %d values at time %g go on from 0 where those before "
+		warn("%sthe last %d values at time %g go on from 0 where those before "
 		     "would have reached %g: no life is predicted since, because a counter "
 		     "seems to have wrapped",
-			unit, *unit ? ": " : "", RESCALED_HALF, o->now.rescaled,
-			o->now.range);
+			o->prefix, RESCALED_HALF, o->now.rescaled, o->now.range);
 	else if (o->now.factor != 0)
-		warn("%s%sthe last %d values at time %g are %.3g times those before, and so "
+		warn("%sthe last %d values at time %g are %.3g times those before, and so "
 		     "are their steps: no life is predicted since, because their unit or the "
 		     "gain seems to have changed",
-			unit, *unit ? ": " : "", RESCALED_HALF, o->now.rescaled,
-			o->now.factor);
+			o->prefix, RESCALED_HALF, o->now.rescaled, o->now.factor);
 
 	for (int i = 0; i < n_events; i++) {
 		struct event *e = &events[i];
@@ -741,30 +736,21 @@ void outlook_count(struct outlook *o)
 	}
 }
 
-/* Adds a word to a list; frees the list before. */
-static char *add_word(char *list, const char *prefix, const char *word)
-{
-	char *longer = xprintf("%s %s%s", list, prefix, word);
-
-	free(list);
-	return longer;
-}
-
 char *outlook_columns(const char *before)
 {
 	char *names = levels_columns(before, "rul_q", &levels);
 
-	names = add_word(names, "", "p_no_crossing");
+	names = xappend(names, " p_no_crossing");
 	if (!isnan(mission))
-		names = add_word(names, "", "p_failure");
+		names = xappend(names, " p_failure");
 	if (!isnan(cost_ratio))
-		names = add_word(names, "", "replace_in");
+		names = xappend(names, " replace_in");
 	if (alarms.n > 0)
-		names = add_word(names, "", "alarm");
+		names = xappend(names, " alarm");
 	for (int k = 0; k < covariates_count(); k++)
-		names = add_word(names, "factor_", covariate_name(k));
+		names = xappend(names, " factor_%s", covariate_name(k));
 	for (int k = 0; weights && k < WEIGHED; k++)
-		names = add_word(names, "weight_", weighed[k].name);
+		names = xappend(names, " weight_%s", weighed[k].name);
 	return names;
 }
 
@@ -776,7 +762,7 @@ char *outlook_units(const char *before, const char *time)
 		int is_time = i < levels.n ||
 			      (!isnan(cost_ratio) && i == levels.n + 1 + !isnan(mission));
 
-		units = add_word(units, "", is_time ? time : "1");
+		units = xappend(units, " %s", is_time ? time : "1");
 	}
 	return units;
 }

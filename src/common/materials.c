@@ -7,13 +7,8 @@ char *material_names(void)
 {
 	char *names = xstrdup("");
 
-	for (int i = 0; material_at(i); i++) {
-		char *longer =
-			xprintf("%s%s%s", names, i ? ", " : "", material_at(i)->name);
-
-		free(names);
-		names = longer;
-	}
+	for (int i = 0; material_at(i); i++)
+		names = xappend(names, "%s%s", i ? ", " : "", material_at(i)->name);
 	return names;
 }
 

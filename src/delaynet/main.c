@@ -92,13 +92,8 @@ static struct table_out *create_delays(const char *path, const char *cmd, int n)
 	char *columns = xstrdup("section"), *units = xstrdup("1");
 
 	for (int i = 1; i <= n; i++) {
-		char *longer = xprintf("%s delay%d", columns, i);
-
-		free(columns);
-		columns = longer;
-		longer = xprintf("%s 1", units);
-		free(units);
-		units = longer;
+		columns = xappend(columns, " delay%d", i);
+		units = xappend(units, " 1");
 	}
 	t = table_create(path, cmd, units, columns);
 	free(columns);

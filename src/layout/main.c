@@ -198,11 +198,9 @@ static void put_layout(
 			samples);
 	for (int k = 0; k < n; k++) {
 		char number[NUMBER_TEXT];
-		char *longer = xprintf(
-			"%s%s%s", where, k ? "," : "", number_text(coil[k], number));
 
-		free(where);
-		where = longer;
+		where = xappend(
+			where, "%s%s", k ? "," : "", number_text(coil[k], number));
 	}
 	table_put_text(t, where);
 	const double row[] = { coil[n - 1] - coil[0], par->bound.zone,

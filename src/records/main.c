@@ -124,15 +124,12 @@ static struct table_out *create_table(const struct record *r)
 	char *columns = xstrdup(SOURCE_COLUMNS), *units = xstrdup("1 m m m");
 
 	for (int k = 0; k < r->nfields; k++) {
-		char *longer = xprintf("%s %s", columns, r->name[k]);
+		size_t before = strlen(units);
 
-		free(columns);
-		columns = longer;
-		longer = xprintf("%s %s", units, *r->unit[k] ? r->unit[k] : "1");
-		for (char *s = longer + strlen(units) + 1; *s; s++)
+		columns = xappend(columns, " %s", r->name[k]);
+		units = xappend(units, " %s", *r->unit[k] ? r->unit[k] : "1");
+		for (char *s = units + before + 1; *s; s++)
 			*s = *s == ' ' || *s == '\t' ? '_' : *s;
-		free(units);
-		units = longer;
 	}
 	t = table_create(NULL, NULL, units, columns);
 	free(columns);
@@ -145,12 +142,8 @@ static void check_fields(char **first, const struct record *r, const struct sour
 {
 	char *names = xstrdup("");
 
-	for (int k = 0; k < r->nfields; k++) {
-		char *longer = xprintf("%s%s%s", names, k ? ", " : "", r->name[k]);
-
-		free(names);
-		names = longer;
-	}
+	for (int k = 0; k < r->nfields; k++)
+		names = xappend(names, "%s%s", k ? ", " : "", r->name[k]);
 	if (*first && strcmp(*first, names) != 0)
 		die(EXIT_RUN,
 			"%s: record %ld has fields %s, the first one %s: use "

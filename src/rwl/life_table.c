@@ -16,30 +16,24 @@ struct lifetable {
 
 static char *column_names(const struct lifetable_par *par)
 {
-	char *names, *more;
-
 	if (par->samples)
 		return xstrdup("t path rwl");
-	names = levels_columns("t mean", "q", par->levels);
-	more = xprintf("%s p_no_failure%s%s", names, par->grey ? " grey" : "",
+	return xappend(levels_columns("t mean", "q", par->levels), " p_no_failure%s%s",
+		par->grey ? " grey" : "",
 		isnan(par->eol) ? "" : " truth error accuracy mass inside covered crps");
-	free(names);
-	return more;
 }
 
 static char *column_units(const struct lifetable_par *par)
 {
-	char *quantiles, *all;
+	char *units;
 
 	if (par->samples)
 		return xstrdup("s 1 s");
-	quantiles = xcalloc((size_t)par->levels->n, 2);
-	for (int i = 0; i < 2 * par->levels->n - 1; i++)
-		quantiles[i] = i % 2 ? ' ' : 's';
-	all = xprintf("s s %s 1%s%s", quantiles, par->grey ? " s" : "",
+	units = xstrdup("s s");
+	for (int i = 0; i < par->levels->n; i++)
+		units = xappend(units, " s");
+	return xappend(units, " 1%s%s", par->grey ? " s" : "",
 		isnan(par->eol) ? "" : " s s 1 1 1 1 s");
-	free(quantiles);
-	return all;
 }
 
 struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *par)

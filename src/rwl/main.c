@@ -75,36 +75,26 @@ static const struct prog prog = { "rwl",
 	"tables: particles or volumes of fragments (--wear); state",
 	"table: one row per observation time", opts };
 
-/* Dies if one of these options was given. */
-static void exclude(const char *const *word, const char *why)
-{
-	for (; *word; word++)
-		if (opt_given(*word))
-			die(EXIT_USAGE, "--%s %s", *word, why);
-}
-
 /* Dies where options contradict one another. */
 static void settle(void)
 {
-	static const char *const of_fragments[] = { "critical-size", "calibrate", "rates",
-		"speed", "step-time", "parts", "first-step", "fragment-area",
-		"transition", NULL };
-	static const char *const of_sizes[] = { "critical-probability", "sizes", NULL };
 	static const char *const of_state[] = { "quantity", "state-unit", "state-error",
-		"skip", "grey", NULL };
+		"skip", "grey" };
 
 	pump_check();
 	covariates_check();
 	if (covariates_count() > 0 && rule != RATE_FILTER)
 		die(EXIT_USAGE, "--covariate requires --wear-rate filter");
-	if (wear_files.n == 0)
-		exclude(of_fragments, "requires --wear");
-	if (isnan(pump.critical_size))
-		exclude(of_sizes, "requires --critical-size");
+	opt_require("wear",
+		"critical-size calibrate rates speed step-time parts first-step "
+		"fragment-area transition");
+	opt_require("critical-size", "critical-probability sizes");
 	if (state_file && new)
 		die(EXIT_USAGE, "--new reads no state, not even %s", state_file);
-	if (calibrations.n == 0 && new)
-		exclude(of_state, "requires a state: --new reads none");
+	for (size_t i = 0; i < sizeof of_state / sizeof *of_state; i++)
+		if (calibrations.n == 0 && new &&opt_given(of_state[i]))
+			die(EXIT_USAGE, "--%s requires a state: --new reads none",
+				of_state[i]);
 	for (int i = 1; i < levels.n; i++)
 		if (!(levels.v[i] > levels.v[i - 1]))
 			die(EXIT_USAGE, "--levels: levels must be ascending");

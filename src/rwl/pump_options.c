@@ -96,14 +96,10 @@ void pump_check(void)
 /* Appends a phrase where none of some options was given. */
 static void assume(char **list, const char *phrase, const char *const *options)
 {
-	char *longer;
-
 	for (; *options; options++)
 		if (opt_given(*options))
 			return;
-	longer = xprintf("%s%s%s", *list ? *list : "", *list ? ", " : "", phrase);
-	free(*list);
-	*list = longer;
+	*list = xappend(*list, "%s%s", *list ? ", " : "", phrase);
 }
 
 char *pump_assumed(int fragments, int leaks)

@@ -295,14 +295,11 @@ static void scale_units(struct text_in *t)
 	for (int c = 0; c < t->format.channels; c++) {
 		const char *name = unit[t->taken[c]];
 		double volts = name ? unit_scale(name, UNIT_VOLTAGE) : 0;
-		char *longer;
 
 		if (volts > 0)
 			name = "V";
 		t->scale[c] = volts > 0 ? volts : 1;
-		longer = xprintf("%s%s%s", units, c ? " " : "", name ? name : "1");
-		free(units);
-		units = longer;
+		units = xappend(units, "%s%s", c ? " " : "", name ? name : "1");
 	}
 	t->format.units = units;
 }

@@ -21,7 +21,7 @@ static double spread(const struct noise *n, int count)
 
 void noise_add(struct noise *n, double y, double gap)
 {
-	if (n->rows >= 2 && gap > 0) {
+	if (n->rows >= 2) {
 		double w = gap / (gap + n->gap);
 		double line = w * n->y[0] + (1 - w) * y;
 		long k = n->rows - 2;

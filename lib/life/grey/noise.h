@@ -20,7 +20,7 @@ struct noise {
 	double scale; /* standard deviation; 0 below three rows or for an exact line */
 };
 
-/* Adds the observation made gap after the last one. */
+/* Adds the observation made gap > 0 after the last one. */
 void noise_add(struct noise *n, double y, double gap);
 
 #endif

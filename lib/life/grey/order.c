@@ -143,7 +143,7 @@ static void choose(struct order *o, int high)
 			best = p;
 		}
 	}
-	o->now.counts.changes += o->now.chosen > 0 && best != o->now.chosen;
+	o->now.counts.changes += best != o->now.chosen;
 	o->now.chosen = best;
 }
 

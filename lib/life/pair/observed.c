@@ -24,7 +24,8 @@ void observed_begin(struct observed *o, struct moment m)
 	o->every = 1;
 }
 
-/* Every second one of those kept goes when there is no more room. */
+/* Every second one of those kept goes when there is no more room, and so does the new
+ * one, which is as far from the last. */
 static void keep(struct observed *o, struct moment m)
 {
 	if (o->passed++ % o->every)
@@ -34,8 +35,7 @@ static void keep(struct observed *o, struct moment m)
 			o->kept[i] = o->kept[2 * i];
 		o->n_kept = (OBSERVED_KEPT + 1) / 2;
 		o->every *= 2;
-		if ((o->passed - 1) % o->every)
-			return;
+		return;
 	}
 	o->kept[o->n_kept++] = m;
 }

@@ -20,21 +20,10 @@ enum { MODEL = 3 };
  * those of outliers .178, .147 and .135. */
 static const double OUTLYING = 10;
 
-/* A past row of all particles, and the gap before it. */
-struct lag {
-	struct filter_step step;
-	double gap;
-};
-
 /* The sums of a grey fit: x about a centre, u the integral of the states from the oldest
  * on. */
 struct sums {
 	double tail, u, x, uu, ux;
-};
-
-/* Those of two states side by side. */
-struct pair {
-	lanes tail, u, x, uu, ux;
 };
 
 struct adaptive {
@@ -42,7 +31,6 @@ struct adaptive {
 	struct draw *draw, *draw_paths;
 	struct filter *filter;
 	struct order *order;
-	struct lag *lag;    /* [depth] */
 	double *mean;       /* [N] prior means */
 	struct sums *sums;  /* [N] */
 	double *past, *gap; /* the last rows, oldest first: values and gaps before */
@@ -75,12 +63,11 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
-	a->lag = calloc(depth, sizeof *a->lag);
 	a->mean = calloc(par->filter.particles, sizeof *a->mean);
 	a->sums = calloc(par->filter.particles, sizeof *a->sums);
 	a->past = calloc(2 * depth, sizeof *a->past);
-	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->mean ||
-		!a->sums || !a->past) {
+	if (!a->draw_paths || !a->filter || !a->order || !a->mean || !a->sums ||
+		!a->past) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -96,7 +83,6 @@ void adaptive_free(struct adaptive *a)
 	draw_free(a->draw_paths);
 	filter_free(a->filter);
 	order_free(a->order);
-	free(a->lag);
 	free(a->mean);
 	free(a->sums);
 	free(a->past);
@@ -122,122 +108,75 @@ struct adaptive_counts adaptive_counts(const struct adaptive *a)
 		a->restarts, order_counts(a->order) };
 }
 
-/* The sums of states i and j of count rows whose states are those of the newest one's
- * ancestors in the same order; begun by those of older rows, if there are any. */
-static inline struct pair add_states(const struct sums *older, const struct lag *newest,
-	int count, size_t i, size_t j, double centre)
+/* The gap before the states of lag steps ago; newest_gap: of the last, behind those
+ * before it, NULL: all are h. */
+static double gap_at(const double *newest_gap, int lag, double h)
 {
-	struct pair s = { 0 };
+	return newest_gap ? newest_gap[-lag] : h;
+}
 
-	if (older) {
-		const struct sums *a = &older[newest[count].step.ancestor[i]],
-				  *b = &older[newest[count].step.ancestor[j]];
+/* Adds a row to the sums over older rows, NULL: there are none.  States with a common
+ * ancestor share its sums.  In place, from the end: ancestors ascend from 0 in steps of 0
+ * or 1, so that none lies after its descendant. */
+static void add_row(struct sums *sums, const struct filter_step *row,
+	const struct filter_step *older, double gap, double centre)
+{
+	for (size_t i = row->n; i-- > 0;) {
+		struct sums s = older ? sums[older->ancestor[i]] : (struct sums){ 0 };
+		double part = row->x[i] * gap, u = s.tail + 0.5 * part,
+		       off = row->x[i] - centre;
 
-		s = (struct pair){ { a->tail, b->tail }, { a->u, b->u }, { a->x, b->x },
-			{ a->uu, b->uu }, { a->ux, b->ux } };
-	}
-	for (int k = count; k-- > 0;) {
-		lanes x = { newest[k].step.x[i], newest[k].step.x[j] },
-		      part = x * newest[k].gap, u = s.tail + 0.5 * part, off = x - centre;
-
-		s = (struct pair){ s.tail + part, s.u + u, s.x + off, s.uu + u * u,
+		sums[i] = (struct sums){ s.tail + part, s.u + u, s.x + off, s.uu + u * u,
 			s.ux + u * off };
 	}
-	return s;
 }
 
-/* The sums over the older rows for the states of the newest ones, *newer rows with equal
- * states; NULL: there are no older ones.  In place, from the end: ancestors ascend from 0
- * in steps of 0 or 1, so that none lies after its descendant. */
-static const struct sums *add_older(
-	struct adaptive *a, int count, double centre, int *newer)
-{
-	const struct sums *older = NULL;
-
-	for (int from, end = count;; end = from) {
-		size_t n = a->lag[end - 1].step.n;
-
-		for (from = end - 1; from > 0 && a->lag[from - 1].step.n == n;)
-			from--;
-		*newer = end;
-		if (from == 0)
-			return older;
-		for (size_t i = (n + 1) / 2 * 2; i > 0;) {
-			size_t j = i - 1 < n ? i - 1 : i - 2;
-			struct pair s = add_states(
-				older, &a->lag[from], end - from, i -= 2, j, centre);
-
-			a->sums[j] = (struct sums){ s.tail[1], s.u[1], s.x[1], s.uu[1],
-				s.ux[1] };
-			a->sums[i] = (struct sums){ s.tail[0], s.u[0], s.x[0], s.uu[0],
-				s.ux[0] };
-		}
-		older = a->sums;
-	}
-}
-
-/* The grey forecast, h after the newest of count rows, of every particle.  Particles with
- * a common ancestor share its sums.  An exponential through states that cannot be
- * distinguished from 0 is meaningless, and so is one beyond grey_reach(): such states
- * keep their mean. */
-static void forecast(struct adaptive *a, int count, double h, double noise)
-{
-	const struct filter_step *newest = &a->lag[0].step;
-	size_t n = a->par.filter.particles;
-	double centre = newest->x[0], share = 1.0 / count, end = h, most, reach,
-	       *mean = a->mean;
-	int newer;
-	const struct sums *older = add_older(a, count, centre, &newer);
-
-	for (int k = 0; k < count; k++)
-		end += a->lag[k].gap;
-	most = grey_rate_limit(count, end - h);
-	reach = grey_reach(most, h);
-	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
-		size_t last = i - 1 < newest->n ? i - 1 : i - 2;
-		struct pair s = add_states(older, a->lag, newer, i -= 2, last, centre);
-		lanes u = s.u * share, x = s.x * share, uu = s.uu - s.u * u,
-		      ux = s.ux - s.u * x, middle = centre + x,
-		      rate = lanes_if(lanes_and(lanes_abs(ux) < most * uu,
-					      lanes_abs(middle) > 3 * noise),
-			      -ux / uu),
-		      level = middle + rate * u,
-		      limit = reach * lanes_abs(level - rate * s.tail);
-
-		for (int k = 0; k < 2; k++) {
-			struct sums *to = &a->sums[k ? last : i];
-
-			to->tail = limit[k];
-			to->u = rate[k];
-			to->x = middle[k];
-			mean[k ? last : i] = level[k];
-		}
-	}
-	/* in a loop of its own, so that several exponentials overlap in the processor */
-	for (size_t i = 0; i < newest->n; i += 2) {
-		int width = newest->n - i < 2 ? 1 : 2;
-		const struct sums *one = &a->sums[i], *two = one + width - 1;
-		lanes level = lanes_load(mean + i, width), rate = { one->u, two->u },
-		      limit = { one->tail, two->tail }, middle = { one->x, two->x },
-		      next = grey_curve(level, rate, end, h);
-
-		lanes_store(mean + i, lanes_pick(lanes_abs(next) > limit, middle, next),
-			width);
-	}
-	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
-		mean[i] = mean[newest->ancestor[i]];
-}
-
-/* Prior mean of every particle: the grey forecast from its own last p states.  The oldest
- * state of the window only starts the first interval (see grey.h).  newest_gap: of those
- * between the states, NULL: all are h. */
+/* Prior mean of every particle: the grey forecast, h after the newest, from its own last
+ * p states.  The oldest of them only starts the first interval (see grey.h).  An
+ * exponential through states that cannot be distinguished from 0 is meaningless, and so
+ * is one beyond grey_reach(): such states keep their mean. */
 static void forecast_particles(struct adaptive *a, const struct filter *f,
 	const double *newest_gap, int p, double h, double noise)
 {
+	struct filter_step newest = filter_step(f, 0), older;
+	size_t n = a->par.filter.particles;
+	double centre = newest.x[0], share = 1.0 / (p - 1), end = h, most, reach,
+	       *mean = a->mean;
+
+	for (int k = p - 1; k-- > 0;) {
+		struct filter_step row = filter_step(f, k);
+
+		add_row(a->sums, &row, k < p - 2 ? &older : NULL,
+			gap_at(newest_gap, k, h), centre);
+		older = row;
+	}
 	for (int k = 0; k < p - 1; k++)
-		a->lag[k] = (struct lag){ filter_step(f, k),
-			newest_gap ? newest_gap[-k] : h };
-	forecast(a, p - 1, h, noise);
+		end += gap_at(newest_gap, k, h);
+	most = grey_rate_limit(p - 1, end - h);
+	reach = grey_reach(most, h);
+	for (size_t i = 0; i < newest.n; i += 2) {
+		int width = newest.n - i < 2 ? 1 : 2;
+		const struct sums *s = &a->sums[i], *t = s + width - 1;
+		lanes u = share * (lanes){ s->u, t->u },
+		      x = share * (lanes){ s->x, t->x }, tail = { s->tail, t->tail },
+		      uu = { s->uu, t->uu }, ux = { s->ux, t->ux }, middle = centre + x,
+		      rate, level, next;
+
+		uu -= (lanes){ s->u, t->u } * u;
+		ux -= (lanes){ s->u, t->u } * x;
+		rate = lanes_if(lanes_and(lanes_abs(ux) < most * uu,
+					lanes_abs(middle) > 3 * noise),
+			-ux / uu);
+		level = middle + rate * u;
+		next = grey_curve(level, rate, end, h);
+		lanes_store(mean + i,
+			lanes_pick(
+				lanes_abs(next) > reach * lanes_abs(level - rate * tail),
+				middle, next),
+			width);
+	}
+	for (size_t i = newest.n < n ? n : 0; i-- > 0;)
+		mean[i] = mean[newest.ancestor[i]];
 }
 
 static void hold_particles(struct adaptive *a)

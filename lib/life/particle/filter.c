@@ -165,13 +165,8 @@ void filter_predict(struct filter *f, const double *mean, double sigma)
 	double *x = push_step(f);
 
 	draw_normals(f->draw, x, f->par.particles);
-	for (size_t i = 0; i < f->par.particles; i += 2) {
-		int width = f->par.particles - i < 2 ? 1 : 2;
-
-		lanes_store(x + i,
-			lanes_load(mean + i, width) + sigma * lanes_load(x + i, width),
-			width);
-	}
+	for (size_t i = 0; i < f->par.particles; i++)
+		x[i] = mean[i] + sigma * x[i];
 	find_moments(f);
 }
 
@@ -184,16 +179,15 @@ struct filter_now filter_now(const struct filter *f)
 static double nearest(const struct filter *f, double y, double noise)
 {
 	const double *x = states_of(f, 0);
-	lanes least = lanes_all(INFINITY);
+	double least = INFINITY;
 
-	for (size_t i = 0; i < f->par.particles; i += 2) {
-		int width = f->par.particles - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * (1 / noise);
+	for (size_t i = 0; i < f->par.particles; i++) {
+		double z = fabs((y - x[i]) * (1 / noise));
 
-		least = lanes_min(least, lanes_pick(lanes_load(f->weight + i, width) > 0,
-						 lanes_abs(z), least));
+		if (f->weight[i] > 0 && z < least)
+			least = z;
 	}
-	return fmin(least[0], least[1]);
+	return least;
 }
 
 /* Multiplies the weights by the likelihoods of y over that of the nearest particle, whose
@@ -207,18 +201,12 @@ static double weigh(struct filter *f, double y, double noise, double near)
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * (1 / noise),
+		lanes at = lanes_load(x + i, width), z = (y - at) * (1 / noise),
 		      l = 0.5 * (near * near - z * z),
 		      w = lanes_load(weight + i, width) *
 			  lanes_if(l > -FAR, lanes_exp(l));
 
 		lanes_store(weight + i, w, width);
-	}
-	/* in a loop of its own, so that several exponentials overlap in the processor */
-	for (size_t i = 0; i < n; i += 2) {
-		int width = n - i < 2 ? 1 : 2;
-		lanes w = lanes_load(weight + i, width), at = lanes_load(x + i, width);
-
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
@@ -287,10 +275,9 @@ static void prune(struct filter *f)
 	}
 }
 
-double filter_update(struct filter *f, double y, double noise)
+void filter_update(struct filter *f, double y, double noise)
 {
-	double before = f->at.sum, near = nearest(f, y, noise),
-	       squares = weigh(f, y, noise, near), sum = f->at.sum;
+	double squares = weigh(f, y, noise, nearest(f, y, noise)), sum = f->at.sum;
 	size_t n = f->par.particles;
 
 	f->at.now.ess = sum * sum / squares;
@@ -300,5 +287,4 @@ double filter_update(struct filter *f, double y, double noise)
 		prune(f);
 		f->at.now.resamplings++;
 	}
-	return log(sum / before) - 0.5 * near * near - log(noise) - 0.5 * log(2 * M_PI);
 }

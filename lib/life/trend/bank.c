@@ -472,21 +472,24 @@ static void drop_outlier(struct bank *b)
 	b->n_held = kept;
 }
 
-/* Sum over the trends, by weight, of the function of, which gets the observation of a
- * damage as the trend expects it, step after the last row, with its variance and
- * standardised innovation. */
-static double expect(const struct bank *b, double damage, double step,
-	double (*of)(const struct bank *, const struct trend *, const struct place *,
-		double f, double z))
+/* What the trends, by weight, say of an observation: its density, and how many of them it
+ * surprises. */
+struct opinion {
+	double density, surprised;
+};
+
+/* Of an observation of a damage, step after the last row. */
+static struct opinion opinion_of(const struct bank *b, double damage, double step)
 {
-	double sum = 0;
+	struct opinion sum = { 0 };
+	double limit = student_square(SURPRISE, b->freedom[0]);
 	struct place place;
 	int shape = -1;
 
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
 		struct place seen;
-		double f, line[LINE];
+		double f, z, line[LINE];
 
 		if (tr->weight < 1e-6)
 			continue;
@@ -496,25 +499,12 @@ static double expect(const struct bank *b, double damage, double step,
 		advance_state(2, line, b->at, advance_of(b, tr, step), 1);
 		seen = seen_from(line[LINE_H], &place);
 		f = line[LINE_HH] + wander_of(b, tr, &seen, step) + squared_slope(seen);
-		sum += tr->weight *
-		       of(b, tr, &seen, f, (seen.h - line[LINE_H]) / sqrt(f));
+		z = (seen.h - line[LINE_H]) / sqrt(f);
+		sum.density += tr->weight * exp(log_density(b, tr, &seen, f, z));
+		if (z * z > limit * tr->sum / freedom_of(b, tr))
+			sum.surprised += tr->weight;
 	}
 	return sum;
-}
-
-static double density(const struct bank *b, const struct trend *tr, const struct place *p,
-	double f, double z)
-{
-	return exp(log_density(b, tr, p, f, z));
-}
-
-static double is_surprised(const struct bank *b, const struct trend *tr,
-	const struct place *p, double f, double z)
-{
-	(void)p;
-	(void)f;
-	return z * z >
-	       student_square(SURPRISE, b->freedom[0]) * tr->sum / freedom_of(b, tr);
 }
 
 /* Widens the variance of the level by a jump of the damage to this value. */
@@ -599,9 +589,11 @@ double chance_of_jump(const struct bank *b)
  * against idleness. */
 static int was_idle(const struct bank *b, double damage, double step)
 {
-	return (damage < b->level && expect(b, damage, b->gap, is_surprised) >= 0.9) ||
-	       expect(b, damage, step, is_surprised) >= 0.9 ||
-	       expect(b, damage, b->gap, density) > expect(b, damage, step, density);
+	struct opinion idle = opinion_of(b, damage, b->gap),
+		       running = opinion_of(b, damage, step);
+
+	return (damage < b->level && idle.surprised >= 0.9) || running.surprised >= 0.9 ||
+	       idle.density > running.density;
 }
 
 /* The mean gap, halts included, as seen from a random time: of readings in bursts it is
@@ -610,7 +602,7 @@ static double usual_gap(const struct bank *b)
 {
 	double total = b->age + b->idle / b->unit - b->longest;
 
-	return total > 0 ? (b->squares - b->longest * b->longest) / total : b->gap;
+	return (b->squares - b->longest * b->longest) / total;
 }
 
 /* The next gap, halts included, if rows come at a constant ratio of their ages, as they
@@ -687,7 +679,7 @@ static int goes_on(const struct bank *b, const struct row *r)
 		2 * damage < b->level + damage_of(b, b->held[b->n_held - 1].y))
 		return 0;
 	return equals(b, r->y) ||
-	       expect(b, damage, (r->t - b->last) / b->unit, is_surprised) < 0.9;
+	       opinion_of(b, damage, (r->t - b->last) / b->unit).surprised < 0.9;
 }
 
 static void accept_held(struct bank *b);

@@ -192,7 +192,7 @@ void mean_loads(const struct bank *b, double f[RATES])
 
 	f[0] = 1;
 	for (int k = 0; k < b->par.n_loads; k++)
-		f[1 + k] = span > 0 ? b->load[k].sum / span : 0;
+		f[1 + k] = b->load[k].sum / span;
 }
 
 /* The mean ahead and its variance, under the condition of the last value and of the mean
@@ -202,7 +202,7 @@ static void foresee(
 {
 	double a = l->pull * ahead, kept, stays;
 
-	if (!(l->wander > 0 && a > 0))
+	if (!(l->wander > 0))
 		return;
 	kept = -expm1(-a) / a;
 	stays = a < 1e-2 ? 2 * a / 3 : 2 / a - (3 - 4 * exp(-a) + exp(-2 * a)) / (a * a);

@@ -352,9 +352,9 @@ static int belongs(int draw, double share)
 	return floor((draw + 1) * share) > floor(draw * share);
 }
 
-/* Fills this share of life[], or with rest = 1 all else. */
+/* Fills this share of life[]. */
 static void draw_share(const struct bank *b, const struct bank_chances *c, double now,
-	double level, double share, int rest, double *life)
+	double level, double share, double *life)
 {
 	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
 	double target = damage_of(b, level), spread = spread_of(b, target);
@@ -369,29 +369,28 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 			continue;
 		p = prepare(b, &b->trend[i], ahead, target, spread);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
-			if (belongs(drawn, share) != rest)
+			if (belongs(drawn, share))
 				life[drawn] = last =
 					b->unit *
 					draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
 	}
 	for (; drawn < c->n; drawn++)
-		if (belongs(drawn, share) != rest)
+		if (belongs(drawn, share))
 			life[drawn] = last;
 }
 
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, double now,
 	double level, double *life)
 {
-	double share = chance_of_jump(b);
 	struct bank *other;
 
-	draw_share(b, c, now, level, share, 1, life);
+	draw_share(b, c, now, level, 1, life);
 	if (b->n_held == 0)
 		return NUM_OK;
 	other = bank_accepting(b);
 	if (!other)
 		return NUM_MEMORY;
-	draw_share(other, c, now, level, share, 0, life);
+	draw_share(other, c, now, level, chance_of_jump(b), life);
 	bank_free(other);
 	return NUM_OK;
 }
