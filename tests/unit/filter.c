@@ -26,32 +26,37 @@ static void make_walk(struct walk *w, uint64_t seed)
 	draw_free(d);
 }
 
-/* Root mean square error of the Kalman filter. */
-static double kalman(const struct walk *w)
+/* Root mean square error of the Kalman filter, and its log evidence. */
+static double kalman(const struct walk *w, double *evidence)
 {
 	double x = 0, p = NOISE * NOISE, sum = 0;
 
+	*evidence = 0;
 	for (int k = 0; k < STEPS; k++) {
-		double gain;
+		double e, s, gain;
 
 		x += DRIFT;
 		p += PROCESS * PROCESS;
-		gain = p / (p + NOISE * NOISE);
-		x += gain * (w->y[k] - x);
+		e = w->y[k] - x;
+		s = p + NOISE * NOISE;
+		gain = p / s;
+		*evidence -= 0.5 * (log(2 * M_PI * s) + e * e / s);
+		x += gain * e;
 		p *= 1 - gain;
 		sum += (x - w->x[k]) * (x - w->x[k]);
 	}
 	return sqrt(sum / STEPS);
 }
 
-/* The same of the particle filter. */
-static double particles(
-	const struct walk *w, const struct filter_par *par, double missing)
+/* The same quantities of the particle filter. */
+static double particles(const struct walk *w, const struct filter_par *par,
+	double missing, double *evidence)
 {
 	struct draw *d = draw_new(5, 0, RNG_FILTER);
 	struct filter *f = filter_new(par, d);
 	double *mean = malloc(par->particles * sizeof *mean), past = 0, sum = 0;
 
+	*evidence = 0;
 	filter_start(f, &past, 1, sqrt(3) * NOISE);
 	for (int k = 0; k < STEPS; k++) {
 		struct filter_step now = filter_step(f, 0);
@@ -60,7 +65,7 @@ static double particles(
 			mean[i] = now.x[now.ancestor[i]] + DRIFT;
 		filter_predict(f, mean, PROCESS);
 		if (!(missing > 0) || fmod(k * missing, 1) >= missing)
-			filter_update(f, w->y[k], NOISE);
+			*evidence += filter_update(f, w->y[k], NOISE);
 		sum += (filter_now(f).mean - w->x[k]) * (filter_now(f).mean - w->x[k]);
 	}
 	free(mean);
@@ -73,21 +78,25 @@ static double particles(
 static void test_kalman(double share, const char *name)
 {
 	struct filter_par par = { 2000, 2, share };
-	double best = 0, got = 0;
+	double best = 0, got = 0, log_best, log_got, worst = 0;
 
 	for (int s = 0; s < 20; s++) {
 		struct walk w;
 		double a, b;
 
 		make_walk(&w, (uint64_t)s);
-		a = kalman(&w);
-		b = particles(&w, &par, 0);
+		a = kalman(&w, &log_best);
+		b = particles(&w, &par, 0, &log_got);
 		best += a * a;
 		got += b * b;
+		worst = tap_max(worst, fabs(log_got - log_best));
 	}
 	ok(fabs(sqrt(got / best) - 1) < 0.02,
 		"%s: the mean is within %.4f of the Kalman filter's error", name,
 		sqrt(got / best));
+	/* The standard deviation of the log evidence is about sqrt(STEPS / N) = 0.45. */
+	ok(worst < 2.5, "%s: the log evidence is within %.2f of the Kalman filter's",
+		name, worst);
 }
 
 /* Ancestors rise, and over many draws particle i is taken n w_i times on the mean. */
@@ -135,14 +144,15 @@ static void test_weights(void)
 	struct filter_par par = { 500, 3, 0.5 };
 	struct draw *d = draw_new(1, 0, RNG_FILTER);
 	struct filter *f = filter_new(&par, d);
-	double *mean = calloc(500, sizeof *mean), past = 0;
+	double *mean = calloc(500, sizeof *mean), past = 0, evidence;
 
 	filter_start(f, &past, 1, 1);
 	near(filter_now(f).ess, 500, 1e-9, "the weights are equal at the start");
 	filter_predict(f, mean, 1);
 	/* 1e6 standard deviations away: exp() of every weight is 0 */
-	filter_update(f, 1e3, 1e-3);
-	ok(isfinite(filter_now(f).mean), "weights that underflow stay finite");
+	evidence = filter_update(f, 1e3, 1e-3);
+	ok(isfinite(evidence) && isfinite(filter_now(f).mean),
+		"weights that underflow stay finite");
 	ok(filter_now(f).ess >= 1 && filter_now(f).mean > 1.5,
 		"the nearest particle survives");
 	filter_predict(f, mean, 1);
@@ -212,14 +222,14 @@ int main(void)
 {
 	struct filter_par par = { 2000, 2, 0.5 };
 	struct walk w;
-	double a, b;
+	double a, b, evidence;
 
 	test_kalman(0.5, "systematic");
 	test_kalman(1, "at every step");
 	test_resampling();
 	make_walk(&w, 1);
-	b = particles(&w, &par, 0);
-	a = particles(&w, &par, 0.2);
+	b = particles(&w, &par, 0, &evidence);
+	a = particles(&w, &par, 0.2, &evidence);
 	ok(a > b && a < 2 * b,
 		"with a fifth of the rows missing the error is %.3f, with all %.3f", a,
 		b);

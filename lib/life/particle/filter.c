@@ -275,9 +275,10 @@ static void prune(struct filter *f)
 	}
 }
 
-void filter_update(struct filter *f, double y, double noise)
+double filter_update(struct filter *f, double y, double noise)
 {
-	double squares = weigh(f, y, noise, nearest(f, y, noise)), sum = f->at.sum;
+	double before = f->at.sum, near = nearest(f, y, noise),
+	       squares = weigh(f, y, noise, near), sum = f->at.sum;
 	size_t n = f->par.particles;
 
 	f->at.now.ess = sum * sum / squares;
@@ -287,4 +288,5 @@ void filter_update(struct filter *f, double y, double noise)
 		prune(f);
 		f->at.now.resamplings++;
 	}
+	return log(sum / before) - 0.5 * near * near - log(noise) - 0.5 * log(2 * M_PI);
 }

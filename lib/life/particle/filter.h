@@ -60,8 +60,8 @@ struct filter_step filter_step(const struct filter *f, int lag);
 /* Moves to the next step: states mean[N] plus normal noise. */
 void filter_predict(struct filter *f, const double *mean, double sigma);
 /* Weights particles by y with observation noise of scale noise > 0, then resamples if
- * necessary. */
-void filter_update(struct filter *f, double y, double noise);
+ * necessary.  Returns the log of the evidence, log mean(p(y|x)). */
+double filter_update(struct filter *f, double y, double noise);
 
 /* Weighted mean of the states of the present step, as predicted; after an update it is
  * that before resampling, as is the effective sample size. */
