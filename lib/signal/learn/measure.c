@@ -400,9 +400,9 @@ static enum separate_status check_band(
 }
 
 /* NO_LAG if y1 correlates with a later y2 no more than channels of noise do, whatever its
- * spectrum: in units of 1 / sqrt(n), and compared with other lags.  Regular trains of
- * pulses, which repeat their correlation farther away, have at least half of their power
- * in common, as has noise at few lags only if it has lines. */
+ * spectrum: compared with other lags.  Regular trains of pulses, which repeat their
+ * correlation farther away, have at least half of their power in common, as has noise at
+ * few lags only if it has lines. */
 static enum separate_status check_lag(const struct record *rec, const double *y1,
 	const double *y2, const struct calibration *c)
 {
@@ -413,8 +413,6 @@ static enum separate_status check_lag(const struct record *rec, const double *y1
 
 	if (status != SEPARATE_OK)
 		return status;
-	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
-		return SEPARATE_NO_LAG;
 	range[0] = (struct align_range){ NEAREST * low, FARTHEST * low };
 	range[1] = (struct align_range){ fmax(NEAREST * low, VARIES * lag), INFINITY };
 	if (align_elsewhere(y1, y2, n, n / 2, lag, c->correlation < 0.5 ? 2 : 1, range,
