@@ -16,6 +16,27 @@ static int is_constant(const double *x, size_t n)
 	return 1;
 }
 
+/* Another look at the same record. */
+static struct look look_with(const struct look *look, const struct calibrate_par *par)
+{
+	return (struct look){ .par = par,
+		.x = { look->x[0], look->x[1] },
+		.n = look->n,
+		.effort = look->effort };
+}
+
+/* Keeps other in place of c if its pulses describe the record, and better. */
+static int keep_better(struct calibration *c, struct calibration *other)
+{
+	int better = other->penalised < c->penalised && learn_describes(other) &&
+		     !other->dense;
+
+	calibration_clear(better ? c : other);
+	if (better)
+		*c = *other;
+	return better;
+}
+
 /* One attempt, on the record whitened by w if w has taps.  c takes over w. */
 static enum separate_status attempt(
 	struct look *look, const struct whitening *w, struct calibration *c)
@@ -26,7 +47,7 @@ static enum separate_status attempt(
 
 	memset(c, 0, sizeof *c);
 	c->whitening = *w;
-	c->work = look->work;
+	c->work = look->effort->work;
 	c->estimated = look->settled;
 	c->presumed_white =
 		look->coloured && !look->settled && !(w->tap && look->noise.drift > 0);
@@ -46,7 +67,7 @@ static enum separate_status attempt(
 		status = measure(look, look->x[0] + edge, work + edge, work + n + edge,
 			n - 2 * edge, work + 2 * n, c);
 	free(work);
-	look->work = c->work;
+	look->effort->work = c->work;
 	if (status != SEPARATE_OK)
 		calibration_clear(c);
 	return status;
@@ -130,14 +151,7 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 	const struct calibrate_par *par = look->par;
 	struct calibrate_par fewer = *par;
 	struct whitening w = { .tap = NULL };
-	struct look other_look = { .par = &fewer,
-		.x = { look->x[0], look->x[1] },
-		.n = look->n,
-		.attempts = look->attempts,
-		.work = look->work,
-		.seen = 1,
-		.wide = look->wide,
-		.events = look->found.events };
+	struct look other_look = look_with(look, &fewer);
 	struct calibration other;
 	enum separate_status status;
 
@@ -147,20 +161,16 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 			fewer.omega[fewer.tones++] = c->omega[k];
 	if (fewer.tones == c->tones)
 		return SEPARATE_OK;
-	fewer.most = fmin(par->most, (1 + LINES_WORK) * look->work);
+	fewer.most = fmin(par->most, (1 + LINES_WORK) * look->effort->work);
+	other_look.seen = 1;
+	other_look.wide = look->wide;
+	other_look.events = look->found.events;
 	status = attempt(&other_look, &w, &other);
-	other_look.par = par;
-	look->attempts = other_look.attempts;
-	look->work = other_look.work;
 	if (status != SEPARATE_OK)
 		return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
-	if (other.penalised < c->penalised && learn_describes(&other)) {
-		calibration_clear(c);
-		*c = other;
+	other_look.par = par;
+	if (keep_better(c, &other))
 		*look = other_look;
-	} else {
-		calibration_clear(&other);
-	}
 	return SEPARATE_OK;
 }
 
@@ -214,8 +224,6 @@ static enum separate_status attempt_white(struct look *look, struct calibration 
 	status = attempt_kind(&smooth, WHITEN_COLOURED, c);
 	if (status == SEPARATE_MEMORY)
 		return status;
-	look->attempts = smooth.attempts;
-	look->work = smooth.work;
 	/* No filter makes noise that drifts. */
 	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
 		learn_describes(c))
@@ -250,11 +258,8 @@ static enum separate_status find(struct look *look, struct calibration *c)
 			whitening_of_filter(&w, par->filter, par->filter_taps));
 	if (status != SEPARATE_OK)
 		return status;
-	look->first =
-		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
-	look->drifts = !par->filter;
+	look->first = !par->filter;
 	status = attempt(look, &w, c);
-	look->drifts = 0;
 	if (status == SEPARATE_COLOURED) {
 		status = attempt_white(look, c);
 		if (status != SEPARATE_COLOURED)
@@ -295,11 +300,7 @@ static enum separate_status try_velocities(
 {
 	struct calibrate_par limited = *look->par;
 	double lo = v->fastest / WIDER, hi = v->slowest * WIDER, low;
-	struct look wide = { .par = &limited,
-		.x = { look->x[0], look->x[1] },
-		.n = look->n,
-		.work = look->work,
-		.seen = 1 };
+	struct look wide = look_with(look, &limited);
 	enum separate_status status;
 
 	limited.lag = v->ratio * 0.5 * (lo + hi);
@@ -307,10 +308,9 @@ static enum separate_status try_velocities(
 	limited.most *= HALF;
 	if (learn_duration(PULSE_SINE, 1, &low) != NUM_OK)
 		return SEPARATE_MEMORY;
+	wide.seen = 1;
 	wide.lowest = 0.5 * (lo + hi) / low;
 	status = find(&wide, c);
-	look->attempts = wide.attempts;
-	look->work = wide.work;
 	if (status == SEPARATE_OK && (!learn_describes(c) || c->dense)) {
 		calibration_clear(c);
 		status = SEPARATE_HARD;
@@ -324,26 +324,17 @@ static enum separate_status try_velocities(
 static enum separate_status try_wide(struct look *look, struct calibration *c)
 {
 	struct calibrate_par limited = *look->par;
-	struct look wide = { .par = &limited,
-		.x = { look->x[0], look->x[1] },
-		.n = look->n,
-		.attempts = look->attempts,
-		.work = look->work,
-		.wide = 1 };
+	struct look wide = look_with(look, &limited);
 	struct calibration other = { 0 };
 	enum separate_status status;
 
-	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->work);
+	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->effort->work);
+	wide.wide = 1;
 	status = find(&wide, &other);
-	look->attempts = wide.attempts;
-	look->work = wide.work;
-	if (status == SEPARATE_OK && other.penalised < c->penalised &&
-		learn_describes(&other) && !other.dense) {
-		calibration_clear(c);
-		*c = other;
-		return SEPARATE_OK;
-	}
-	calibration_clear(&other);
+	if (status == SEPARATE_OK)
+		keep_better(c, &other);
+	else
+		calibration_clear(&other);
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
@@ -358,11 +349,7 @@ static enum separate_status without_crosstalk(struct look *look, struct calibrat
 	for (int k = 0; k < ROUNDS && status == SEPARATE_OK &&
 			(c->crosstalk[0] != 0 || c->crosstalk[1] != 0);
 		k++) {
-		struct look clean = { .par = look->par,
-			.x = { x, x + n },
-			.n = n,
-			.attempts = look->attempts,
-			.work = look->work };
+		struct look clean = look_with(look, look->par);
 		struct calibration other = { 0 };
 		double more[2] = { removed[0] + c->crosstalk[0],
 			removed[1] + c->crosstalk[1] };
@@ -370,9 +357,9 @@ static enum separate_status without_crosstalk(struct look *look, struct calibrat
 		memcpy(x, look->x[0], n * sizeof *x);
 		memcpy(x + n, look->x[1], n * sizeof *x);
 		calibration_unmix(more, x, x + n, n);
+		clean.x[0] = x;
+		clean.x[1] = x + n;
 		status = find(&clean, &other);
-		look->attempts = clean.attempts;
-		look->work = clean.work;
 		if (status != SEPARATE_OK) {
 			calibration_clear(&other);
 			break;
@@ -409,7 +396,8 @@ static enum separate_status find_velocities(const struct look *look, struct velo
 static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
-	struct look look = { .par = par, .x = { x1, x2 }, .n = n };
+	struct effort effort = { 0 };
+	struct look look = { .par = par, .x = { x1, x2 }, .n = n, .effort = &effort };
 	struct velocities v = { 0 };
 	int broad;
 	enum separate_status status = SEPARATE_HARD;
@@ -432,8 +420,8 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 		status = try_wide(&look, c);
 	if (status == SEPARATE_OK)
 		status = without_crosstalk(&look, c);
-	c->attempts = look.attempts;
-	c->work = look.work;
+	c->attempts = effort.attempts;
+	c->work = effort.work;
 	return status;
 }
 

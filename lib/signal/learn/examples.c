@@ -16,10 +16,9 @@ static const unsigned char *hidden_of(
 								   : NULL;
 }
 
-/* Stores y1, y2[from, to) if it is among the most clearest.  loud: merits of the stored
- * ones. */
-static void offer_example(struct examples *ex, const double *y1, const double *y2,
-	long long from, long long to, int most, double shortest, double *loud)
+/* Stores [from, to) of the record if it is among the most clearest. */
+static void offer_example(
+	struct examples *ex, long long from, long long to, int most, double shortest)
 {
 	double energy = 0, merit, length = (double)(to - from);
 	int at;
@@ -27,7 +26,7 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 	if (length < 1.5 * shortest / 2)
 		return;
 	for (long long i = from; i < to; i++)
-		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
+		energy += ex->y1[i] * ex->y1[i] + ex->y2[i] * ex->y2[i] - 2;
 	/* Large amplitudes and few pulses are preferred. */
 	merit = energy * pow(shortest / length, 4);
 	/* Samples that are not known are at the peaks of large pulses: others come first.
@@ -35,39 +34,37 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 	if (hidden_of(ex, 0, from, (size_t)(to - from)) ||
 		hidden_of(ex, 1, from, (size_t)(to - from)))
 		merit = -1 / fmax(merit, 0);
-	for (at = ex->count; at > 0 && loud[at - 1] < merit; at--)
-		if (at < most) {
-			loud[at] = loud[at - 1];
+	for (at = ex->count; at > 0 && ex->example[at - 1].merit < merit; at--)
+		if (at < most)
 			ex->example[at] = ex->example[at - 1];
-		}
 	if (at == most)
 		return;
-	loud[at] = merit;
-	ex->example[at].y1 = y1 + from;
-	ex->example[at].y2 = y2 + from;
-	ex->example[at].begin = from;
-	ex->example[at].n = (size_t)(to - from);
-	ex->example[at].m = ex->example[at].outlier = 0;
-	ex->example[at].isolated = length < 1.4 * shortest;
+	ex->example[at] = (struct example){ .y1 = ex->y1 + from,
+		.y2 = ex->y2 + from,
+		.begin = from,
+		.n = (size_t)(to - from),
+		.isolated = length < 1.4 * shortest,
+		.merit = merit };
 	ex->count += ex->count < most;
 }
 
 /* The clearest short sections of the record; of long ones, pieces if allowed. */
-static void pick_sections(struct examples *ex, const double *y1, const double *y2,
-	size_t n, int most, int allow_pieces, const struct calibration *c)
+static void pick_sections(
+	struct examples *ex, int most, int allow_pieces, const struct calibration *c)
 {
-	double T = c->duration, loud[EXAMPLES_MAX] = { 0 };
+	const long long n = (long long)ex->n;
+	double T = c->duration;
 	double slack = fmax(c->delta_max, -c->delta_min);
 	long margin;
 	struct sections *s;
 	struct section section;
-	const double *const y[] = { y1, y2 };
+	const double *const y[] = { ex->y1, ex->y2 };
 
 	ex->count = 0;
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
 	s = sections_new(c->shape, T, SIGMAS_NEVER, slack);
-	if (!s || sections_scan(s, y, 2, 0, n, (long long)n) != NUM_OK) {
+	if (!s || sections_scan(s, y, 2, 0, ex->n, n) != NUM_OK) {
 		ex->status = SEPARATE_MEMORY;
 		sections_free(s);
 		return;
@@ -76,13 +73,13 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	margin = sections_margin(s);
 	while (sections_first(s, &section)) {
 		long long begin = section.begin > 0 ? section.begin : 0;
-		long long end = section.end < (long long)n ? section.end : (long long)n;
+		long long end = section.end < n ? section.end : n;
 		long long pieces = 1 + (end - begin) / (6 * margin);
 
 		for (long long k = 0; k < pieces && (pieces == 1 || allow_pieces); k++)
-			offer_example(ex, y1, y2, begin + (end - begin) * k / pieces,
+			offer_example(ex, begin + (end - begin) * k / pieces,
 				begin + (end - begin) * (k + 1) / pieces, most,
-				2 * (double)margin, loud);
+				2 * (double)margin);
 		sections_take(s, section.end);
 	}
 	sections_free(s);
@@ -90,16 +87,15 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 
 /* Pieces of sections contain parts of pulses: they are used only if few sections are
  * short. */
-void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
-	int most, const struct calibration *c)
+void examples_pick(struct examples *ex, int most, const struct calibration *c)
 {
 	enum { ENOUGH = 4 };
 
-	ex->middle = 0.5 * (double)n;
-	pick_sections(ex, y1, y2, n, most, 0, c);
+	ex->middle = 0.5 * (double)ex->n;
+	pick_sections(ex, most, 0, c);
 	ex->pieces = ex->count < ENOUGH;
 	if (ex->pieces)
-		pick_sections(ex, y1, y2, n, most, 1, c);
+		pick_sections(ex, most, 1, c);
 }
 
 /* Returns the status of a fit, and stores it if memory was short. */
@@ -113,7 +109,7 @@ static enum joint_status note_memory(struct examples *ex, enum joint_status stat
 /* 1 if more work may be done; stores SEPARATE_HARD if not. */
 static int may_go_on(struct examples *ex)
 {
-	if (ex->before + joint_work(ex->joint) > ex->most)
+	if (ex->before + joint_work(ex->joint) > ex->par->most)
 		ex->status = SEPARATE_HARD;
 	return ex->status == SEPARATE_OK;
 }
@@ -180,8 +176,7 @@ static const double MOST_CROSSTALK = 0.3;
 
 /* Least squares for each example, whose median events do not move that happen to be in
  * the other channel at its time. */
-static double crosstalk_of(
-	struct examples *ex, int c, const double *rest, size_t n, double *model)
+static double crosstalk_of(struct examples *ex, int c, const double *rest, double *model)
 {
 	double share[EXAMPLES_MAX], energy = 0, middle, error;
 	size_t count = 0;
@@ -191,7 +186,7 @@ static double crosstalk_of(
 		long long at = e->begin + (c ? -ex->shift : ex->shift);
 		double own;
 
-		if (e->outlier || at < 0 || at + (long long)e->n > (long long)n)
+		if (e->outlier || at < 0 || at + (long long)e->n > (long long)ex->n)
 			continue;
 		memset(model, 0, e->n * sizeof *model);
 		for (int k = 0; k < e->m; k++)
@@ -212,17 +207,17 @@ static double crosstalk_of(
 		       : 0;
 }
 
-void examples_crosstalk(struct examples *ex, const double *y1, const double *y2, size_t n,
-	double share[2])
+void examples_crosstalk(struct examples *ex, double share[2])
 {
+	const size_t n = ex->n;
 	double *work = malloc((3 * n + 1) * sizeof *work);
 
 	if (!work) {
 		ex->status = SEPARATE_MEMORY;
 		return;
 	}
-	memcpy(work, y1, n * sizeof *work);
-	memcpy(work + n, y2, n * sizeof *work);
+	memcpy(work, ex->y1, n * sizeof *work);
+	memcpy(work + n, ex->y2, n * sizeof *work);
 	for (int i = 0; i < ex->count; i++) {
 		const struct example *e = &ex->example[i];
 		double most = 0;
@@ -236,7 +231,7 @@ void examples_crosstalk(struct examples *ex, const double *y1, const double *y2,
 					work + e->begin, work + n + e->begin, e->n);
 	}
 	for (int c = 0; c < 2; c++)
-		share[c] = crosstalk_of(ex, c, work + (size_t)c * n, n, work + 2 * n);
+		share[c] = crosstalk_of(ex, c, work + (size_t)c * n, work + 2 * n);
 	free(work);
 }
 

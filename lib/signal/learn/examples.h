@@ -23,12 +23,16 @@ struct example {
 	struct joint_pulse trial[EXAMPLE_PULSES]; /* by examples_chi2() */
 	int m;
 	int isolated;  /* 1: hardly longer than one pulse */
+	double merit;  /* large for the clearest */
 	double excess; /* of chi-square over its degrees of freedom */
 	int outlier; /* 1: its residual is so much larger than those of the others that it
 			contains other events */
 };
 
 struct examples {
+	const struct calibrate_par *par;
+	const double *y1, *y2; /* the record: n samples, aligned */
+	size_t n;
 	struct joint *joint;
 	struct joint_scene scene;   /* present parameters of the instrument, ... */
 	struct joint_scene present; /* ... at one example */
@@ -53,16 +57,15 @@ struct examples {
 	double penalised; /* their chi-square and twice the threshold for each pulse, per
 			 degree */
 	double rest[2];   /* power of either channel's residual, that of its noise 1 */
-	double before, most; /* work done before, and its limit */
+	double before;    /* work done before */
 	/* SEPARATE_MEMORY after a function was out of memory, SEPARATE_HARD after the
 	 * limit of work was exceeded; the results are invalid then. */
 	enum separate_status status;
 };
 
-/* Selects the clearest short sections of y1, y2[0 .. n), aligned, at most most of them;
- * if few are short, also pieces of longer ones.  The record must outlive them. */
-void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
-	int most, const struct calibration *c);
+/* Selects the clearest short sections of the record, at most most of them; if few are
+ * short, also pieces of longer ones. */
+void examples_pick(struct examples *ex, int most, const struct calibration *c);
 
 /* Finds the pulses of all examples again; one that overlaps others must reduce chi-square
  * by this share of their energy.  Returns the median of their chi-square per degree of
@@ -80,11 +83,10 @@ void examples_keep(struct examples *ex);
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
-/* Share of the other channel in either of y1, y2[0 .. n), of which the examples are; 0
- * where it is not certain.  The pulses of an example are looked for in the other channel
- * at the same time: in that one they are a transit time earlier or later. */
-void examples_crosstalk(struct examples *ex, const double *y1, const double *y2, size_t n,
-	double share[2]);
+/* Share of the other channel in either one of the record; 0 where it is not certain.  The
+ * pulses of an example are looked for in the other channel at the same time: in that one
+ * they are a transit time earlier or later. */
+void examples_crosstalk(struct examples *ex, double share[2]);
 
 /* The gain at one example. */
 double examples_gain(const struct examples *ex, const struct example *e);

@@ -95,59 +95,54 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 /* Adjusts duration and gain to the least chi-square, unless they are known.  Pieces,
  * which contain parts of pulses, are fitted well by longer pulses, too: in crowds their
  * duration is not believed against the spectrum. */
-static void tune(
-	const struct calibrate_par *par, struct examples *ex, double step, int rounds)
+static void tune(struct examples *ex, double step, int rounds)
 {
-	if (isnan(par->duration))
+	if (isnan(ex->par->duration))
 		minimise(ex, &ex->scene.duration, step, rounds);
 	if (fabs(ex->scene.duration - ex->spectral) > ex->within && ex->within > 0)
 		ex->scene.duration = ex->spectral;
-	if (isnan(par->gain))
+	if (isnan(ex->par->gain))
 		minimise(ex, &ex->scene.gain, step, rounds);
 }
 
 /* Chi-square with this width.  Mean duration and energy at sensor 2 are kept: duration
  * and gain that go with the width then hardly change with it. */
-static double chi2_of_width(
-	const struct calibrate_par *par, struct examples *ex, double log_width)
+static double chi2_of_width(struct examples *ex, double log_width)
 {
 	double change = sqrt(exp(log_width) / ex->scene.width);
 
 	ex->scene.width = exp(log_width);
-	ex->scene.duration /= isnan(par->duration) ? change : 1;
-	ex->scene.gain /= isnan(par->gain) ? change : 1;
+	ex->scene.duration /= isnan(ex->par->duration) ? change : 1;
+	ex->scene.gain /= isnan(ex->par->gain) ? change : 1;
 	return examples_chi2(ex);
 }
 
 /* Chi-square if the logarithm of the gain changes by this much in what is learned from.
  */
-static double chi2_of_drift(
-	const struct calibrate_par *par, struct examples *ex, double change)
+static double chi2_of_drift(struct examples *ex, double change)
 {
-	(void)par;
 	ex->drift = change / (2 * ex->middle);
 	return examples_chi2(ex);
 }
 
-typedef double chi2_of(const struct calibrate_par *, struct examples *, double);
+typedef double chi2_of(struct examples *, double);
 
 /* Adjusts a parameter that is 0 in most instruments to the least chi-square, by a
  * parabola; 1 if it has changed.  It is 0 unless it reduces chi-square by more than
  * noise, and what the shape leaves, would. */
-static int tune_rare(const struct calibrate_par *par, struct examples *ex, chi2_of *of,
-	double before, double step)
+static int tune_rare(struct examples *ex, chi2_of *of, double before, double step)
 {
 	const double small = 5e-4;
 	const struct examples kept = *ex;
-	double middle = of(par, ex, before), best, now, below, above, none;
+	double middle = of(ex, before), best, now, below, above, none;
 
-	below = of(par, ex, before - step);
-	above = of(par, ex, before + step);
+	below = of(ex, before - step);
+	above = of(ex, before + step);
 	now = before + step * to_least(below, middle, above);
-	best = of(par, ex, now);
-	none = before == 0 ? middle : of(par, ex, 0);
+	best = of(ex, now);
+	none = before == 0 ? middle : of(ex, 0);
 	if (none - best > SIGMAS_NEVER * SIGMAS_NEVER * fmax(best / ex->dof, 1))
-		of(par, ex, now);
+		of(ex, now);
 	else
 		now = 0;
 	if (fabs(now - before) > small)
@@ -218,15 +213,15 @@ enum { TAKEN, KNOWN, SINGLE };
 static const double FAR_OFF = 5;
 
 /* Takes the pulse of a single event for the shape.  SEPARATE_HARD if there is none. */
-static enum separate_status set_single(const struct examples *ex, const double *y1,
-	const double *y2, size_t n, const struct guess *guess, struct calibration *c)
+static enum separate_status set_single(
+	const struct examples *ex, const struct guess *guess, struct calibration *c)
 {
 	struct template one = { 0 };
 	double reach = fmax(c->delta_max,
 		calibration_reach(CALIBRATE_WIDE, (double)c->shift, c->duration));
 
-	if (template_find(&one, y1, y2, ex->hidden, n, c->duration, c->transit, c->width,
-		    reach, guess->single) != NUM_OK)
+	if (template_find(&one, ex->y1, ex->y2, ex->hidden, ex->n, c->duration,
+		    c->transit, c->width, reach, guess->single) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!one.shape)
 		return SEPARATE_HARD;
@@ -236,13 +231,12 @@ static enum separate_status set_single(const struct examples *ex, const double *
 
 /* Fits the shape of c to some examples; it has to be better than the best one by the
  * factor need. */
-static enum separate_status try_shape(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n,
-	struct guess guess, double need, struct calibration *c, struct guess *best)
+static enum separate_status try_shape(struct examples *ex, struct guess guess,
+	double need, struct calibration *c, struct guess *best)
 {
 	ex->signs = guess.signs;
 	c->width = guess.width;
-	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
+	examples_pick(ex, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
 		return SEPARATE_OK;
 	scene_of(c, &ex->scene);
@@ -252,7 +246,7 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	ex->drift = 0;
-	tune(par, ex, 0.1, 3);
+	tune(ex, 0.1, 3);
 	guess.chi2 = examples_fit(ex, 0.003);
 	if (ex->status != SEPARATE_OK)
 		return ex->status;
@@ -269,9 +263,8 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 
 /* Tries a pulse of sensor.h from a duration on, with the width guessed and with equal
  * ones: groups mislead the guess. */
-static enum separate_status try_known(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
-	double duration, double need, struct calibration *c, struct guess *best)
+static enum separate_status try_known(struct examples *ex, int pulse, double duration,
+	double need, struct calibration *c, struct guess *best)
 {
 	struct guess guess = { .pulse = pulse,
 		.reversed = c->reversed,
@@ -282,12 +275,12 @@ static enum separate_status try_known(const struct calibrate_par *par,
 	c->duration = duration;
 	if (learn_set_shape(c, pulse) != NUM_OK)
 		return SEPARATE_MEMORY;
-	status = try_shape(par, ex, y1, y2, n, guess, need, c, best);
+	status = try_shape(ex, guess, need, c, best);
 	if (guess.width != 1 && status == SEPARATE_OK) {
 		const double guessed = guess.width;
 
 		guess.width = 1;
-		status = try_shape(par, ex, y1, y2, n, guess, need, c, best);
+		status = try_shape(ex, guess, need, c, best);
 		c->width = guessed;
 	}
 	return status;
@@ -295,16 +288,14 @@ static enum separate_status try_known(const struct calibrate_par *par,
 
 /* Takes shape and duration from the spectrum of a long record in which few pulses stand
  * apart. */
-static enum separate_status learn_crowd(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n,
-	struct calibration *c)
+static enum separate_status learn_crowd(struct examples *ex, struct calibration *c)
 {
-	int pulse = par->pulse;
+	int pulse = ex->par->pulse;
 	double guess = c->duration, error = 0;
 
-	c->duration = par->duration;
-	if (crowd_pulse(y1, y2, n, c->tone_hop, guess, &pulse, &c->duration, &error) !=
-			NUM_OK ||
+	c->duration = ex->par->duration;
+	if (crowd_pulse(ex->y1, ex->y2, ex->n, c->tone_hop, guess, &pulse, &c->duration,
+		    &error) != NUM_OK ||
 		learn_set_shape(c, pulse) != NUM_OK)
 		return SEPARATE_MEMORY;
 	ex->spectral = c->duration;
@@ -320,10 +311,10 @@ static enum separate_status learn_crowd(const struct calibrate_par *par,
  * describe single pulses equally well.  Other durations are tried as the first one
  * described them better, and one of each shape in whitened records: they take more work.
  */
-static enum separate_status learn_shape(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
+static enum separate_status learn_shape(struct examples *ex, double low,
 	const struct template *hint, struct calibration *c)
 {
+	const struct calibrate_par *par = ex->par;
 	static const double factor[] = { 1, 0.7, 1.4 };
 	const int reversed = hint && hint->reversed;
 	const int signs = ex->signs || c->whitening.tap ? 1 : 2;
@@ -337,17 +328,16 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 
 	/* A drifting baseline looks like a crowd of a few long pulses: a spectrum is
 	 * taken of as many durations as there may be examples, or more. */
-	if (!c->whitening.tap && (double)n >= EXAMPLES_MAX * c->duration) {
+	if (!c->whitening.tap && (double)ex->n >= EXAMPLES_MAX * c->duration) {
 		if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
 			return SEPARATE_MEMORY;
-		examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
+		examples_pick(ex, EXAMPLES_MAX, c);
 		if (ex->pieces)
-			return learn_crowd(par, ex, y1, y2, n, c);
+			return learn_crowd(ex, c);
 	}
 	c->reversed = reversed;
 	if (hint && hint->events && hint->elsewhere)
-		status = try_known(
-			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
+		status = try_known(ex, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
 		for (int i = 0; i < signs * PULSE_SHAPES; i++) {
 			const int p = i % PULSE_SHAPES;
@@ -366,8 +356,8 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
-				status = try_known(par, ex, y1, y2, n, p, duration,
-					k ? 0.5 : 1, c, &best);
+				status =
+					try_known(ex, p, duration, k ? 0.5 : 1, c, &best);
 		}
 	c->reversed = best.reversed;
 	c->width = best.width;
@@ -386,9 +376,7 @@ enum { SINGLES = 3 };
 /* Takes the pulse of that single event, of the clearest few, which describes some clear
  * examples best, all of one sign or of both, and at a lower price than that of c.
  * SEPARATE_HARD if there is none. */
-static enum separate_status learn_single(const struct calibrate_par *par,
-	struct examples *ex, const double *y1, const double *y2, size_t n,
-	struct calibration *c)
+static enum separate_status learn_single(struct examples *ex, struct calibration *c)
 {
 	struct guess best = { .single = -1, .penalised = c->penalised };
 	const double duration = c->duration;
@@ -398,14 +386,14 @@ static enum separate_status learn_single(const struct calibrate_par *par,
 		struct guess guess = { .single = k, .width = c->width };
 
 		c->duration = duration;
-		status = set_single(ex, y1, y2, n, &guess, c);
+		status = set_single(ex, &guess, c);
 		for (; guess.signs < 2 && status == SEPARATE_OK; guess.signs++)
-			status = try_shape(par, ex, y1, y2, n, guess, 1, c, &best);
+			status = try_shape(ex, guess, 1, c, &best);
 	}
 	if (status == SEPARATE_MEMORY || best.single < 0)
 		return status == SEPARATE_OK ? SEPARATE_HARD : status;
 	c->duration = duration;
-	status = set_single(ex, y1, y2, n, &best, c);
+	status = set_single(ex, &best, c);
 	ex->signs = best.signs;
 	c->duration = best.duration;
 	c->gain = best.gain;
@@ -422,8 +410,7 @@ static const double FAR = 0.7;
 /* Range of the delays seen, widened by half on either side, and how many stand alone.
  * Examples are short, which slow particles are not: outside plug flow they do not limit
  * the delays from above. */
-static void learn_range(
-	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
+static void learn_range(const struct examples *ex, struct calibration *c)
 {
 	double lo = INFINITY, hi = -INFINITY;
 
@@ -442,7 +429,7 @@ static void learn_range(
 		}
 	}
 	calibration_widen(c->duration, &lo, &hi);
-	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
+	if (isnan(ex->par->spread) && c->events >= RANGE_EVENTS) {
 		c->delta_min = fmax(c->delta_min, lo);
 		if (c->delta_max <= calibration_plug(c))
 			c->delta_max = fmin(c->delta_max, hi);
@@ -461,8 +448,7 @@ int learn_stands(const struct calibration *c)
 
 /* Adjusts duration and gain alternately with the pulses of the examples: the closer they
  * are, the smaller a pulse may be without being a misfit of its neighbour. */
-static enum separate_status converge(
-	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+static enum separate_status converge(struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 16 };
 	double step = 0.01, moved, before;
@@ -474,7 +460,7 @@ static enum separate_status converge(
 		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
 			c->chi2 > HOPELESS)
 			break;
-		tune(par, ex, step, 2);
+		tune(ex, step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = ex->scene.duration;
@@ -496,44 +482,38 @@ static enum separate_status converge(
 }
 
 /* Adjusts width and drift of the gain; 1 if one has changed. */
-static int tune_rest(const struct calibrate_par *par, struct examples *ex, int round)
+static int tune_rest(struct examples *ex, int round)
 {
 	double finest = 0.01, step = fmax(0.1 * pow(0.3, round), finest);
-	int changed = tune_rare(par, ex, chi2_of_width, log(ex->scene.width), finest);
+	int changed = tune_rare(ex, chi2_of_width, log(ex->scene.width), finest);
 
-	if (isnan(par->gain))
-		changed |= tune_rare(
-			par, ex, chi2_of_drift, ex->drift * 2 * ex->middle, step);
+	if (isnan(ex->par->gain))
+		changed |= tune_rare(ex, chi2_of_drift, ex->drift * 2 * ex->middle, step);
 	return changed;
 }
 
 /* Adjusts all parameters. */
-static enum separate_status settle(
-	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+static enum separate_status settle(struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 6 };
-	enum separate_status status = converge(par, ex, c);
+	enum separate_status status = converge(ex, c);
 
 	for (int k = 0; k < ROUNDS && status == SEPARATE_OK && !ex->pieces &&
-			ex->status == SEPARATE_OK && tune_rest(par, ex, k);
+			ex->status == SEPARATE_OK && tune_rest(ex, k);
 		k++)
-		status = converge(par, ex, c);
+		status = converge(ex, c);
 	return status;
 }
 
-/* 1 if the shape is to be corrected by all pulses.  One given by the caller is kept,
- * except for the effect of an estimated filter; explanations of a colour are compared by
- * how well uncorrected known pulses fit.  One taken from a whitened record has the noise
+/* 1 if the shape is to be corrected by all pulses.  One given by the caller is kept, and
+ * one that an estimated filter has changed; explanations of a colour are compared by how
+ * well uncorrected known pulses fit.  One taken from a whitened record has the noise
  * of the few events that it is the mean of: with its correction 792 particles of 892 are
  * found and 5 rows are wrong in 23 records of coloured noise, 667 and 50 without it. */
-static int wants_correction(
-	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+static int wants_correction(struct examples *ex, struct calibration *c)
 {
-	if (examples_full(ex))
-		return 0;
-	if (c->estimated)
-		return c->chi2 > 1.1;
-	if (par->pulse != CALIBRATE_ANY_PULSE || ex->pieces ||
+	if (examples_full(ex) || ex->pieces || c->estimated ||
+		ex->par->pulse != CALIBRATE_ANY_PULSE ||
 		(c->whitening.tap && c->presumed_white && !c->measured))
 		return 0;
 	return correct_doubtful(ex, c) || (c->measured && c->whitening.tap);
@@ -550,11 +530,11 @@ void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 
 /* Excludes impulses from the examples as well, by flags of 2 n samples, unless the pulses
  * are so short that they are classified as impulses. */
-static void hide_spikes(struct examples *ex, const double *y1, const double *y2, size_t n,
-	double duration, unsigned char *flags)
+static void hide_spikes(struct examples *ex, double duration, unsigned char *flags)
 {
-	size_t spikes = spikes_find(y1, n, duration, flags) +
-			spikes_find(y2, n, duration, flags + n);
+	const size_t n = ex->n;
+	size_t spikes = spikes_find(ex->y1, n, duration, flags) +
+			spikes_find(ex->y2, n, duration, flags + n);
 
 	for (size_t c = 0; spikes > 0 && 10 * spikes < n && c < 2; c++) {
 		for (size_t i = 0; ex->hidden[c] && i < n; i++)
@@ -606,11 +586,14 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	const double *y2, size_t n, double low, struct template *found, int source,
 	struct calibration *c)
 {
-	struct examples ex = { .joint = joint_new(),
+	struct examples ex = { .par = par,
+		.y1 = y1,
+		.y2 = y2,
+		.n = n,
+		.joint = joint_new(),
 		.misfit = c->misfit,
 		.shift = c->shift,
 		.before = c->work,
-		.most = par->most,
 		.signs = found && found->signs };
 	unsigned char *flags = c->whitening.tap ? NULL : malloc(2 * n + 1);
 	enum separate_status status =
@@ -618,23 +601,23 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 
 	learn_hidden(par, c, ex.hidden);
 	if (flags)
-		hide_spikes(&ex, y1, y2, n, c->duration, flags);
+		hide_spikes(&ex, c->duration, flags);
 	if (source == TAKEN)
 		take_template(c, found);
 	else if (status == SEPARATE_OK)
-		status = source == KNOWN ? learn_shape(par, &ex, y1, y2, n, low, found, c)
-					 : learn_single(par, &ex, y1, y2, n, c);
+		status = source == KNOWN ? learn_shape(&ex, low, found, c)
+					 : learn_single(&ex, c);
 	if (status == SEPARATE_OK) {
-		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
+		examples_pick(&ex, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
 		if (ex.count)
-			status = settle(par, &ex, c);
+			status = settle(&ex, c);
 	}
-	if (status == SEPARATE_OK && ex.count && wants_correction(par, &ex, c) &&
+	if (status == SEPARATE_OK && ex.count && wants_correction(&ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && ex.count && !isinf(c->transit)) {
-		examples_crosstalk(&ex, y1, y2, n, c->crosstalk);
+		examples_crosstalk(&ex, c->crosstalk);
 		c->crosstalk[0] *= c->noise[0] / c->noise[1];
 		c->crosstalk[1] *= c->noise[1] / c->noise[0];
 	}
@@ -648,7 +631,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(c->misfit, ex.share);
 	c->corrected = ex.corrected;
-	learn_range(par, &ex, c);
+	learn_range(&ex, c);
 	joint_free(ex.joint);
 	free(flags);
 	return status;
@@ -711,8 +694,7 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 		if (k == KNOWN && status == SEPARATE_OK && is_enough(1, 0, c))
 			part.most = fmin(
 				part.most, c->work + COMPARED * (c->work - first.work));
-		now = learn_by(&part, y1, y2, n, low, k == KNOWN && taken ? NULL : found,
-			k, &other);
+		now = learn_by(&part, y1, y2, n, low, found, k, &other);
 		c->work = other.work;
 		if (now != SEPARATE_OK && now != SEPARATE_HARD) {
 			shape_free(other.shape);

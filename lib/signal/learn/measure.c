@@ -40,6 +40,7 @@ enum { LONG_HOP = 4096 };
 /* The record while it is measured: aligned from some point on, then in units of the
  * noise. */
 struct record {
+	const struct calibrate_par *par;
 	double *y1, *y2;
 	size_t n;
 	double *work;   /* the same length */
@@ -70,9 +71,10 @@ static double variance(const double *x, size_t n)
 
 /* Range of the delays as far as it is known: that of plug flow, or a wider one if that is
  * asked for or events that are alike do not keep within it. */
-static void set_range(const struct calibrate_par *par, const struct template *found,
-	int wide, struct calibration *c)
+static void set_range(const struct record *rec, const struct template *found, int wide,
+	struct calibration *c)
 {
+	const struct calibrate_par *par = rec->par;
 	double shift = (double)c->shift;
 	double spread = isnan(par->spread)
 				? calibration_plug(c)
@@ -95,12 +97,12 @@ static void set_range(const struct calibrate_par *par, const struct template *fo
 	c->delta_max = fmax(spread, hi);
 }
 
-static void set_thresholds(const struct calibrate_par *par, struct calibration *c)
+static void set_thresholds(const struct record *rec, struct calibration *c)
 {
 	double gain = c->gain * c->noise[0] / c->noise[1];
 
-	c->threshold = calibrate_threshold(par->false_alarm, c->shape, c->duration, gain,
-		c->delta_max - c->delta_min);
+	c->threshold = calibrate_threshold(rec->par->false_alarm, c->shape, c->duration,
+		gain, c->delta_max - c->delta_min);
 	/* Next to a pulse the search covers some 40 cells: 23 gives 2e-3 false pulses. */
 	c->threshold_near = c->threshold < 23 ? c->threshold : 23;
 }
@@ -114,20 +116,19 @@ static double correlation_at(const double *y1, const double *y2, size_t n, size_
 	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
 }
 
-static enum num_status measure_noise(const struct calibrate_par *par,
-	struct calibration *c, const double *y1, const double *y2, size_t n, double *work)
+static enum num_status measure_noise(const struct record *rec, struct calibration *c)
 {
-	size_t shift = (size_t)c->shift;
+	const size_t n = rec->n, shift = (size_t)c->shift;
 
-	if (c->whitening.tap && colour_level(y1, y2 + shift, n - shift, &c->whitening,
-					c->noise) != NUM_OK)
+	if (c->whitening.tap && colour_level(rec->y1, rec->y2 + shift, n - shift,
+					&c->whitening, c->noise) != NUM_OK)
 		return NUM_MEMORY;
 	for (int k = 0; k < 2; k++) {
-		const double *y = k ? y2 : y1;
+		const double *y = k ? rec->y2 : rec->y1;
 		double least = 1e-6 * sqrt(variance(y, n));
 
 		if (!c->whitening.tap)
-			c->noise[k] = robust_noise(y, par->hidden[k], n, work);
+			c->noise[k] = robust_noise(y, rec->par->hidden[k], n, rec->work);
 		if (!(c->noise[k] > least))
 			c->noise[k] = least;
 	}
@@ -164,7 +165,7 @@ static int merge_tones(int tones, const double *omega, double gap, double *merge
 	return near ? 0 : count;
 }
 
-/* Level of the record without these tones, which are followed from hop to hop: the
+/* Level of the record without these tones, which are followed from hop to hop: by the
  * median, which pulses change little, corrected for the coefficients fitted to two hops.
  */
 static enum separate_status level_without_tones(
@@ -175,17 +176,15 @@ static enum separate_status level_without_tones(
 
 	*level = 0;
 	for (int k = 0; k < 2; k++) {
-		double median;
+		double scale;
 		enum separate_status status;
 
 		memcpy(rec->work, k ? rec->y2 : rec->y1, rec->n * sizeof *rec->work);
 		status = take_tones(c, rec->work, rec->n, &track);
 		if (status != SEPARATE_OK)
 			return status;
-		for (size_t i = 0; i < rec->n; i++)
-			rec->work[i] = fabs(rec->work[i]);
-		median = robust_median(rec->work, rec->n);
-		*level += median * median * (1 + share) / (1 - share);
+		scale = robust_scale(rec->work, rec->n);
+		*level += scale * scale * (1 + share) / (1 - share);
 	}
 	return SEPARATE_OK;
 }
@@ -203,8 +202,7 @@ static const double PERIODS = 16;
 /* Chooses the hop by how fast the lines change.  Their frequencies wander, mains by 0.1
  * Hz and more, and a coefficient is that of two hops.  Short hops do not resolve close
  * lines, such as the parts into which a long record splits a wandering one. */
-static enum separate_status choose_hop(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+static enum separate_status choose_hop(const struct record *rec, struct calibration *c)
 {
 	enum { SHORTEST = 256, HOPS = 16 };
 	struct calibration trial = *c, *t = &trial;
@@ -219,7 +217,7 @@ static enum separate_status choose_hop(
 		t->tone_hop = (size_t)SHORTEST << k;
 		t->tones = merge_tones(c->tones, c->omega, gap, t->omega);
 		if ((double)t->tone_hop > longest || t->tones == 0 ||
-			par->tones > t->tones)
+			rec->par->tones > t->tones)
 			continue;
 		if (level_without_tones(rec, t, &level[k]) == SEPARATE_MEMORY)
 			return SEPARATE_MEMORY;
@@ -272,8 +270,7 @@ enum { NEAR_SIDE = 12 };
 
 /* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
  * a few times the usual sample, which includes the lines. */
-static enum separate_status search_tones(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+static enum separate_status search_tones(const struct record *rec, struct calibration *c)
 {
 	size_t n = rec->n;
 	double *rest = malloc(2 * n * sizeof *rest);
@@ -285,7 +282,7 @@ static enum separate_status search_tones(
 	while (status == SEPARATE_OK && added > 0) {
 		struct tones_track track;
 
-		status = choose_hop(par, rec, c);
+		status = choose_hop(rec, c);
 		for (int k = 0; k < 2 && status == SEPARATE_OK; k++) {
 			memcpy(rest + (size_t)k * n, k ? rec->y2 : rec->y1,
 				n * sizeof *rest);
@@ -299,9 +296,9 @@ static enum separate_status search_tones(
 	return status;
 }
 
-static enum separate_status find_tones(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+static enum separate_status find_tones(struct record *rec, struct calibration *c)
 {
+	const struct calibrate_par *par = rec->par;
 	size_t n = rec->n, hop = n < 2 * LONG_HOP ? n : LONG_HOP;
 	struct tones_track track;
 	struct calibration t;
@@ -313,9 +310,9 @@ static enum separate_status find_tones(
 		memcpy(c->omega, par->omega, sizeof c->omega);
 		sort_numbers(c->omega, (size_t)c->tones);
 		if (c->tones > 0)
-			status = choose_hop(par, rec, c);
+			status = choose_hop(rec, c);
 	} else {
-		status = search_tones(par, rec, c);
+		status = search_tones(rec, c);
 	}
 	if (status != SEPARATE_OK)
 		return status;
@@ -336,10 +333,9 @@ static enum separate_status find_tones(
 	return status;
 }
 
-static enum separate_status find_lag(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+static enum separate_status find_lag(const struct record *rec, struct calibration *c)
 {
-	double lag = par->lag, last = (double)rec->n - 16;
+	double lag = rec->par->lag, last = (double)rec->n - 16;
 	enum num_status status;
 
 	if (isnan(lag)) {
@@ -354,29 +350,10 @@ static enum separate_status find_lag(
 	if (lag < 0)
 		return SEPARATE_NO_LAG;
 	if (!(lag < last))
-		return isnan(par->lag) ? SEPARATE_NO_LAG : SEPARATE_FAR;
+		return isnan(rec->par->lag) ? SEPARATE_NO_LAG : SEPARATE_FAR;
 	c->shift = (long)floor(lag + 0.5);
 	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
 	return SEPARATE_OK;
-}
-
-/* NARROW if a filter has left too little of the pulses, which are about twice as long as
- * the lag of their lowest autocorrelation. */
-static enum separate_status check_band(const struct calibrate_par *par,
-	const struct record *rec, const struct calibration *c)
-{
-	double duration = par->duration;
-
-	if (!c->whitening.tap)
-		return SEPARATE_OK;
-	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
-		NUM_OK)
-		return SEPARATE_MEMORY;
-	if (isnan(duration))
-		duration = 2 * learn_lowest_lag(rec->work, rec->n / 4);
-	return (c->whitening.high - c->whitening.low) * duration < NARROW
-		       ? SEPARATE_NARROW
-		       : SEPARATE_OK;
 }
 
 /* By how much the correlation at the transit time exceeds that at other lags.  In 150
@@ -402,10 +379,30 @@ static enum separate_status find_low(
 	return SEPARATE_OK;
 }
 
+/* NARROW if a filter has left too little of the pulses, which are about twice as long as
+ * the lag of their lowest autocorrelation. */
+static enum separate_status check_band(
+	const struct record *rec, const struct calibration *c)
+{
+	double low;
+	enum separate_status status = SEPARATE_OK;
+
+	if (!c->whitening.tap)
+		return SEPARATE_OK;
+	if (isnan(rec->par->duration))
+		status = find_low(rec, rec->y1, rec->y2, &low);
+	else
+		low = 0.5 * rec->par->duration;
+	if (status != SEPARATE_OK)
+		return status;
+	return (c->whitening.high - c->whitening.low) * 2 * low < NARROW ? SEPARATE_NARROW
+									 : SEPARATE_OK;
+}
+
 /* NO_LAG if y1 correlates with a later y2 no more than channels of noise do, whatever its
- * spectrum: in units of 1 / sqrt(n), and compared with other lags.  Regular trains of
- * pulses, which repeat their correlation farther away, have at least half of their power
- * in common, as has noise at few lags only if it has lines. */
+ * spectrum: compared with other lags.  Regular trains of pulses, which repeat their
+ * correlation farther away, have at least half of their power in common, as has noise at
+ * few lags only if it has lines. */
 static enum separate_status check_lag(const struct record *rec, const double *y1,
 	const double *y2, const struct calibration *c)
 {
@@ -416,8 +413,6 @@ static enum separate_status check_lag(const struct record *rec, const double *y1
 
 	if (status != SEPARATE_OK)
 		return status;
-	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
-		return SEPARATE_NO_LAG;
 	range[0] = (struct align_range){ NEAREST * low, FARTHEST * low };
 	range[1] = (struct align_range){ fmax(NEAREST * low, VARIES * lag), INFINITY };
 	if (align_elsewhere(y1, y2, n, n / 2, lag, c->correlation < 0.5 ? 2 : 1, range,
@@ -448,11 +443,11 @@ static enum separate_status follows(const struct record *rec, const double *y1,
 /* SWAPPED if particles seem to pass sensor 2 first.  Tested only if the lag found
  * explains less than half of the power of the channels. */
 static enum separate_status find_reverse(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+	const struct record *rec, const struct calibration *c)
 {
 	enum separate_status status;
 
-	if (!isnan(par->lag) || par->in_order || c->correlation > 0.5)
+	if (!isnan(rec->par->lag) || rec->par->in_order || c->correlation > 0.5)
 		return SEPARATE_OK;
 	status = follows(rec, rec->y2, rec->y1, c);
 	return status == SEPARATE_OK       ? SEPARATE_SWAPPED
@@ -463,15 +458,15 @@ static enum separate_status find_reverse(
 /* OPPOSITE if the channels have nothing in common, but would have if one were negated, at
  * the lag given if it is. */
 static enum separate_status find_opposite(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+	const struct record *rec, const struct calibration *c)
 {
 	struct calibration other = *c;
 	enum separate_status status;
 
 	other.correlation = -c->correlation;
 	negate(rec->y2, rec->n);
-	status = isnan(par->lag) ? follows(rec, rec->y1, rec->y2, c)
-				 : check_lag(rec, rec->y1, rec->y2, &other);
+	status = isnan(rec->par->lag) ? follows(rec, rec->y1, rec->y2, c)
+				      : check_lag(rec, rec->y1, rec->y2, &other);
 	negate(rec->y2, rec->n);
 	return status == SEPARATE_OK ? SEPARATE_OPPOSITE : status;
 }
@@ -499,7 +494,7 @@ static void take_loudness(const double *x, double noise, size_t box, double *y, 
 /* The lag at which the channels correlate where means of samples count by their
  * logarithm: small particles then tell as much of it as large ones, impulses little, and
  * delays that differ by less than a mean add up. */
-static enum separate_status find_lag_by_means(const struct calibrate_par *par,
+static enum separate_status find_lag_by_means(
 	const struct record *rec, size_t box, double *y, struct calibration *c)
 {
 	struct record means = *rec;
@@ -511,7 +506,7 @@ static enum separate_status find_lag_by_means(const struct calibrate_par *par,
 	means.y2 = y + means.n;
 	take_loudness(rec->y1, c->noise[0], box, means.y1, means.n);
 	take_loudness(rec->y2, c->noise[1], box, means.y2, means.n);
-	status = find_lag(par, &means, &other);
+	status = find_lag(&means, &other);
 	if (status == SEPARATE_OK && other.shift == 0)
 		status = SEPARATE_NO_LAG;
 	if (status == SEPARATE_OK)
@@ -529,7 +524,7 @@ static enum separate_status find_lag_by_means(const struct calibrate_par *par,
  * 8 and 28 more particles found rightly, the last of them by longer means than an eighth.
  */
 static enum separate_status find_lag_by_all(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+	const struct record *rec, struct calibration *c)
 {
 	static const double part[] = { 0, 0.25, 0.5, 1 };
 	double low, *y = malloc(2 * rec->n * sizeof *y);
@@ -540,8 +535,7 @@ static enum separate_status find_lag_by_all(
 		status = SEPARATE_NO_LAG;
 	for (size_t k = 0; status == SEPARATE_NO_LAG && k < sizeof part / sizeof *part;
 		k++)
-		status =
-			find_lag_by_means(par, rec, (size_t)fmax(part[k] * low, 1), y, c);
+		status = find_lag_by_means(rec, (size_t)fmax(part[k] * low, 1), y, c);
 	free(y);
 	return status;
 }
@@ -571,9 +565,10 @@ static enum num_status find_width(const struct record *rec, struct calibration *
 	return status;
 }
 
-static enum separate_status find_duration(const struct calibrate_par *par,
+static enum separate_status find_duration(
 	struct record *rec, struct calibration *c, struct look *look)
 {
+	const struct calibrate_par *par = rec->par;
 	double length = (double)rec->n + (double)c->shift;
 
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
@@ -634,14 +629,14 @@ static void scale_noise(struct record *rec, struct calibration *c, double s1, do
 	}
 }
 
-static enum separate_status learn(const struct calibrate_par *par,
+static enum separate_status learn(
 	const struct record *rec, struct template *found, struct calibration *c)
 {
 	if (found && found->alone && !found->shape)
 		return SEPARATE_NO_LAG;
-	set_range(par, found, rec->wide, c);
-	set_thresholds(par, c);
-	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
+	set_range(rec, found, rec->wide, c);
+	set_thresholds(rec, c);
+	return learn_pulse(rec->par, rec->y1, rec->y2, rec->n, rec->low, found, c);
 }
 
 static int is_known(const struct template *found)
@@ -656,9 +651,10 @@ static int is_known(const struct template *found)
 /* Takes the pulse from the record if it is not given; a pulse of sensor.h that fits as
  * well has fewer parameters and is preferred, also one at another duration than the
  * guess, which foreign events may mislead. */
-static enum separate_status find_template(const struct calibrate_par *par,
+static enum separate_status find_template(
 	const struct record *rec, struct template *found, struct calibration *c)
 {
+	const struct calibrate_par *par = rec->par;
 	static const double factor[] = { 1, 0.5, 0.25, 0.125 };
 	const unsigned char *hidden[2];
 
@@ -697,11 +693,11 @@ static enum separate_status find_template(const struct calibrate_par *par,
 
 /* Learns the pulse.  If the noise was measured in a band, a residual of the pulses below
  * it shows that the noise was overestimated. */
-static enum separate_status learn_with_noise(const struct calibrate_par *par,
+static enum separate_status learn_with_noise(
 	struct record *rec, struct template *found, struct calibration *c)
 {
 	enum { ROUNDS = 4 };
-	enum separate_status status = learn(par, rec, found, c);
+	enum separate_status status = learn(rec, found, c);
 
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
 		if (status != SEPARATE_OK || c->events == 0 ||
@@ -709,9 +705,9 @@ static enum separate_status learn_with_noise(const struct calibrate_par *par,
 			break;
 		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
 		if (found->events)
-			status = find_template(par, rec, found, c);
+			status = find_template(rec, found, c);
 		if (status == SEPARATE_OK)
-			status = learn(par, rec, found, c);
+			status = learn(rec, found, c);
 	}
 	return status;
 }
@@ -733,8 +729,7 @@ static enum separate_status look_for_crowd(
 
 /* Otherwise neither the shape nor white noise describes the record: it was filtered.  The
  * noise is then measured behind the matched filter. */
-static enum separate_status learn_filtered(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+static enum separate_status learn_filtered(struct record *rec, struct calibration *c)
 {
 	double n1, n2;
 
@@ -743,24 +738,23 @@ static enum separate_status learn_filtered(
 		return SEPARATE_MEMORY;
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
-	return learn(par, rec, NULL, c);
+	return learn(rec, NULL, c);
 }
 
-static enum separate_status conclude(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+static enum separate_status conclude(struct record *rec, struct calibration *c)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	if (c->events == 0 && isnan(par->duration))
+	if (c->events == 0 && isnan(rec->par->duration))
 		return SEPARATE_NO_LAG;
-	if (c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter))
+	if (c->chi2 > BAD_FIT || (c->whitening.tap && !rec->par->filter))
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
-		set_range(par, NULL, 0, c);
+		set_range(rec, NULL, 0, c);
 	else if (status == SEPARATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
 		 !c->presumed_white)
-		status = learn_filtered(par, rec, c);
-	set_thresholds(par, c);
+		status = learn_filtered(rec, c);
+	set_thresholds(rec, c);
 	return status;
 }
 
@@ -788,31 +782,33 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	size_t n, double *work, struct calibration *c)
 {
 	const struct calibrate_par *par = look->par;
+	const int first =
+		look->first && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	struct record rec = {
-		.y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
+		.par = par, .y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
 	};
-	enum separate_status status = find_tones(par, &rec, c);
+	enum separate_status status = find_tones(&rec, c);
 
 	if (status == SEPARATE_OK)
-		status = find_lag(par, &rec, c);
-	if (status == SEPARATE_OK && measure_noise(par, c, y1, y2, n, work) != NUM_OK)
+		status = find_lag(&rec, c);
+	if (status == SEPARATE_OK && measure_noise(&rec, c) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	if (status == SEPARATE_OK)
-		status = check_band(par, &rec, c);
+		status = check_band(&rec, c);
 	if (status == SEPARATE_OK)
-		status = find_reverse(par, &rec, c);
+		status = find_reverse(&rec, c);
 	if (status == SEPARATE_OK && !look->seen &&
 		(isnan(par->duration) || isnan(par->lag))) {
 		status = check_lag(&rec, y1, y2, c);
 		if (status == SEPARATE_NO_LAG && isnan(par->lag))
-			status = find_lag_by_all(par, &rec, c);
+			status = find_lag_by_all(&rec, c);
 	}
 	if (status == SEPARATE_NO_LAG)
-		status = find_opposite(par, &rec, c);
+		status = find_opposite(&rec, c);
 	if (status != SEPARATE_OK)
 		return status;
 	align(&rec, c);
-	status = find_duration(par, &rec, c, look);
+	status = find_duration(&rec, c, look);
 	if (status != SEPARATE_OK)
 		return status;
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
@@ -824,34 +820,34 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		c->presumed_white = look->coloured;
 	}
 	/* Pulses of any shape would be fitted to the drift. */
-	if (status == SEPARATE_OK && look->drifts && look->noise.drift > 0 &&
+	if (status == SEPARATE_OK && look->first && look->noise.drift > 0 &&
 		!c->whitening.tap)
 		return SEPARATE_COLOURED;
-	look->found.alone = look->first && c->whitening.tap && !(look->noise.drift > 0);
+	look->found.alone = first && c->whitening.tap && !(look->noise.drift > 0);
 	look->found.white = c->whitening.tap || !look->coloured ||
 			    measure_white_above(look, c->duration);
-	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))
-		status = find_template(par, &rec, &look->found, c);
-	if (status == SEPARATE_OK && look->first && look->coloured &&
+	if (status == SEPARATE_OK && (first || !c->whitening.tap))
+		status = find_template(&rec, &look->found, c);
+	if (status == SEPARATE_OK && first && look->coloured &&
 		(!c->whitening.tap || look->found.events == 0) &&
 		!measure_white_above(look, c->duration))
 		status = SEPARATE_COLOURED;
 	else if (status == SEPARATE_OK && look->found.events < look->events)
 		status = SEPARATE_NO_LAG;
-	look->attempts += status == SEPARATE_OK;
+	look->effort->attempts += status == SEPARATE_OK;
 	if (status == SEPARATE_OK)
-		status = learn_with_noise(par, &rec, &look->found, c);
+		status = learn_with_noise(&rec, &look->found, c);
 	if (status == SEPARATE_OK && c->measured && c->whitening.tap)
 		status = set_peak(raw, n, work, &look->found, c);
 	template_clear(&look->found);
-	return status == SEPARATE_OK ? conclude(par, &rec, c) : status;
+	return status == SEPARATE_OK ? conclude(&rec, c) : status;
 }
 
 enum separate_status measure_lines(
 	const struct calibrate_par *par, double *y1, double *y2, size_t n, double *work)
 {
-	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
+	struct record rec = { .par = par, .y1 = y1, .y2 = y2, .n = n, .work = work };
 	struct calibration c = { .tones = 0 };
 
-	return find_tones(par, &rec, &c);
+	return find_tones(&rec, &c);
 }

@@ -10,13 +10,18 @@
 #include "signal/noise/colour.h"
 #include <stddef.h>
 
+/* What was done to learn the instrument, by all looks at its record. */
+struct effort {
+	int attempts;
+	double work; /* samples of pulses computed so far */
+};
+
 /* What is known, the record, and results of the first examination of its noise. */
 struct look {
 	const struct calibrate_par *par;
 	const double *x[2]; /* n samples of either channel */
 	size_t n;
-	int attempts;
-	double work; /* samples of pulses computed so far */
+	struct effort *effort;
 	int coloured;
 	enum whiten_kind kind; /* the kind of colour that is being tried */
 	int settled;           /* 1: this is the last attempt */
@@ -25,9 +30,9 @@ struct look {
 	double wander;         /* mean square change of lines over some thousand samples,
 				  noise 1 */
 	struct colour noise;
-	int first;  /* 1: return COLOURED if the noise is coloured; of a whitened record,
-		       only if no events are alike */
-	int drifts; /* 1: return COLOURED if the noise drifts */
+	/* 1: return COLOURED if the noise drifts or, unless the pulse is known, has
+	 * another colour; of a whitened record, only if no events are alike. */
+	int first;
 	int seen;   /* 1: another attempt told particles from noise */
 	int wide;   /* 1: search the delays of turbulent flow, else of plug flow */
 	int events; /* events that must be alike, as in another attempt */

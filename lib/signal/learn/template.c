@@ -1,6 +1,7 @@
 /* template.c - see template.h */
 #include "signal/learn/template.h"
 #include "num/dot.h"
+#include "num/parabola.h"
 #include "num/select.h"
 #include "num/sigmas.h"
 #include "num/wiener.h"
@@ -33,6 +34,7 @@ static const double CLEAR = 3;
 struct event {
 	double centre, energy, length;
 	double t[2], a[2]; /* arrival and amplitude, by channel */
+	double merit;      /* large for the clearest */
 	int like;          /* 1: of the kind that is averaged */
 };
 
@@ -51,7 +53,6 @@ struct search {
 	int coarse_half;
 	double scatter; /* standard error of a point of the template */
 	struct event event[TEMPLATE_EVENTS];
-	double merit[TEMPLATE_EVENTS];
 	int count;
 };
 
@@ -81,7 +82,7 @@ static int is_known(const struct search *s, size_t from, size_t to)
  * large and short. */
 static void offer(struct search *s, size_t from, size_t to)
 {
-	double energy = 0, moment = 0, merit, length = (double)(to - from);
+	double energy = 0, moment = 0;
 	double margin = SIDE * s->T + s->reach + s->T;
 	struct event e = { 0 };
 	int at;
@@ -96,18 +97,15 @@ static void offer(struct search *s, size_t from, size_t to)
 		return;
 	e.centre = (moment / energy + 0.5) * s->q;
 	e.energy = energy;
-	e.length = length;
+	e.length = (double)(to - from);
+	e.merit = energy * pow(e.length, -4);
 	if (e.centre < margin || e.centre + margin > (double)s->n)
 		return;
-	merit = energy * pow(length, -4);
-	for (at = s->count; at > 0 && s->merit[at - 1] < merit; at--)
-		if (at < TEMPLATE_EVENTS) {
-			s->merit[at] = s->merit[at - 1];
+	for (at = s->count; at > 0 && s->event[at - 1].merit < e.merit; at--)
+		if (at < TEMPLATE_EVENTS)
 			s->event[at] = s->event[at - 1];
-		}
 	if (at == TEMPLATE_EVENTS)
 		return;
-	s->merit[at] = merit;
 	s->event[at] = e;
 	s->count += s->count < TEMPLATE_EVENTS;
 }
@@ -268,9 +266,9 @@ static void measure_event(
 	const struct search *s, struct event *e, int channel, double at, double range)
 {
 	const double *y = s->y[channel], *p = channel ? s->wide : s->p;
-	double energy = dot(p, p, 2 * (size_t)s->half + 1), v[3];
+	size_t n = 2 * (size_t)s->half + 1;
+	double v[3], move;
 	long middle = (long)(at / s->q + 0.5), lag, near;
-	double move = 0, bend;
 
 	lag = best_lag(s->coarse[channel], s->coarse_half, s->z[channel], s->points,
 		middle, (long)(range / s->q) + 1, &v[0]);
@@ -280,15 +278,14 @@ static void measure_event(
 		e->a[channel] = 0;
 		return;
 	}
-	v[0] = dot(p, y + near - 1 - s->half, 2 * (size_t)s->half + 1);
-	v[2] = dot(p, y + near + 1 - s->half, 2 * (size_t)s->half + 1);
-	bend = v[0] - 2 * v[1] + v[2];
-	if (fabs(bend) > 0)
-		move = 0.5 * (v[0] - v[2]) / bend;
+	v[0] = dot(p, y + near - 1 - s->half, n);
+	v[2] = dot(p, y + near + 1 - s->half, n);
+	move = v[1] > 0 ? parabola_top(v[0], v[1], v[2])
+			: parabola_top(-v[0], -v[1], -v[2]);
 	if (fabs(move) > 1)
 		move = 0;
 	e->t[channel] = (double)near + move;
-	e->a[channel] = (v[1] - 0.25 * (v[0] - v[2]) * move) / energy;
+	e->a[channel] = (v[1] - 0.25 * (v[0] - v[2]) * move) / dot(p, p, n);
 }
 
 /* Residual power of an event after the template and a straight line, relative to that of
@@ -380,30 +377,20 @@ static void take_first(struct search *s, struct event *e)
 		s->p[k + s->half] = between(s->y[0], s->n, at + k * stretch);
 }
 
-/* How many clear events are alike, and how many are as short as they: pulses stand alone
- * where events are shortest. */
-static int count_clear(const struct search *s, int *as_short)
+/* How many clear events are alike. */
+static int count_clear(const struct search *s)
 {
 	int clear = 0;
-	double longest = 0;
 
 	for (int i = 0; i < s->count; i++)
-		if (s->event[i].like) {
-			clear += is_clear(&s->event[i]);
-			longest = fmax(longest, s->event[i].length);
-		}
-	*as_short = 0;
-	for (int i = 0; i < s->count; i++)
-		*as_short += is_clear(&s->event[i]) && s->event[i].length <= longest;
+		clear += s->event[i].like && is_clear(&s->event[i]);
 	return clear;
 }
 
 /* Averages the events that equal the one given, then those that equal their mean, a few
- * times; 0 if few are clear, or most events as short as they differ from them. */
+ * times; 0 if few are clear. */
 static int refine(struct search *s, int best)
 {
-	int clear, as_short;
-
 	take_first(s, &s->event[best]);
 	for (int round = 0; round < ROUNDS; round++) {
 		spread_template(s);
@@ -420,8 +407,7 @@ static int refine(struct search *s, int best)
 					  (round ? 1 : 1 + e->a[0] * e->a[0]) +
 						  SIGMAS_NEVER / sqrt(2 * s->half + 1);
 		}
-		clear = count_clear(s, &as_short);
-		if (clear < TEMPLATE_LEAST || 2 * clear < as_short)
+		if (count_clear(s) < TEMPLATE_LEAST)
 			return 0;
 		average(s);
 	}
@@ -614,7 +600,7 @@ static enum num_status make_shape(
  * no pulse, and its delay any that is searched. */
 static void take_events(const struct search *s, double shift, struct template *t)
 {
-	double peak = 0, delay[TEMPLATE_EVENTS], median, least = 0, most = 0;
+	double peak = 0, delay[TEMPLATE_EVENTS], least = 0, most = 0;
 
 	for (int k = 0; k <= 2 * s->half; k++)
 		peak = fmax(peak, fabs(s->p[k]));
@@ -632,33 +618,19 @@ static void take_events(const struct search *s, double shift, struct template *t
 	}
 	t->signs = least < 0 && most > 0;
 	sort_numbers(delay, (size_t)t->events);
-	median = 0.5 * (delay[(t->events - 1) / 2] + delay[t->events / 2]);
-	t->duration /= 1 + median / s->transit;
+	t->duration /= 1 + sorted_quantile(delay, (size_t)t->events, 0.5) / s->transit;
 }
 
-/* Clear events that have to be alike for each one that was dropped.  Where there are
- * fewer, those left may hold pairs, too: with two dropped beside four, 6 of 35 rows of a
- * group of Gaussian pulses are wrong; with one beside five and two beside seven none are.
- */
-enum { MIXED = 3 };
-
-/* Drops events of another width.  *found: 1 if those left have one width.  If any were
- * dropped, all others as short have to be alike: where no pulse stands alone, pairs of
- * nearly one distance may be. */
+/* Drops events of another width.  *found: 1 if enough are left that have one width. */
 static enum num_status make_one_width(struct search *s, int white, int *found)
 {
-	int dropped, others = 0, as_short, clear;
+	int dropped;
 
 	do {
 		if (check_widths(s, white, found, &dropped) != NUM_OK)
 			return NUM_MEMORY;
-		others += dropped;
-		clear = count_clear(s, &as_short);
-		if (others > 0 && (clear < TEMPLATE_LEAST || clear < MIXED * others ||
-					  clear + others < as_short)) {
-			*found = 0;
-			return NUM_OK;
-		}
+		if (dropped > 0 && count_clear(s) < TEMPLATE_LEAST)
+			*found = dropped = 0;
 		if (dropped > 0)
 			average(s);
 	} while (dropped > 0);

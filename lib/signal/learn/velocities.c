@@ -1,6 +1,8 @@
 /* velocities.c - see velocities.h */
 #include "signal/learn/velocities.h"
 #include "num/dot.h"
+#include "num/parabola.h"
+#include "num/room.h"
 #include "num/sigmas.h"
 #include "signal/learn/calibration.h"
 #include "signal/noise/robust.h"
@@ -32,21 +34,6 @@ struct marks {
 	struct mark *mark;
 	size_t count, room;
 };
-
-static enum num_status add_mark(struct marks *m, double t, double T, double value)
-{
-	if (m->count == m->room) {
-		size_t room = m->room ? 2 * m->room : 1024;
-		struct mark *more = realloc(m->mark, room * sizeof *more);
-
-		if (!more)
-			return NUM_MEMORY;
-		m->mark = more;
-		m->room = room;
-	}
-	m->mark[m->count++] = (struct mark){ t, T, value };
-	return NUM_OK;
-}
 
 /* Products of the sine pulse of so many points, of energy 1, with z[0 .. m). */
 static void filter(const double *z, size_t m, int points, double *out)
@@ -91,16 +78,15 @@ static enum num_status find_marks(
 		filter(z, count, points, out);
 		for (size_t i = 1; i + 1 < count; i++) {
 			double a = fabs(out[i - 1]), b = fabs(out[i]),
-			       c = fabs(out[i + 1]), bend = a - 2 * b + c, move;
+			       c = fabs(out[i + 1]), at;
 
 			if (b < SIGMAS_NEVER || b < a || b <= c)
 				continue;
-			move = bend < 0 ? 0.5 * (a - c) / bend : 0;
-			if (add_mark(m,
-				    ((double)i + move + (points % 2 ? 0.5 : 0)) *
-					    (double)q,
-				    points * (double)q, out[i]) != NUM_OK)
+			if (room_for(&m->mark, &m->room, m->count + 1, sizeof *m->mark))
 				return NUM_MEMORY;
+			at = (double)i + parabola_top(a, b, c) + (points % 2 ? 0.5 : 0);
+			m->mark[m->count++] = (struct mark){ at * (double)q,
+				points * (double)q, out[i] };
 		}
 	}
 	if (m->count == 0)
