@@ -112,24 +112,28 @@ static const double FOLLOW = 4;
 /* Adds to the shape repeatedly what the pulses have in common.  At first a pulse that
  * overlaps another must be a large one, so that two pulses of a wrong shape do not stand
  * for one, later a smaller one, as the corrections become smaller.  Ends when they are
- * below what noise makes them, or when more pulses than most are found. */
+ * below what noise makes them, when more pulses than most are found or the residual
+ * suddenly grows. */
 static enum num_status improve_shape(struct examples *ex, struct calibration *c, int most)
 {
 	enum { ROUNDS = 20 };
 	int half = (int)((shape_reach(c->shape) + 0.75) * c->duration);
 	size_t points = 2 * (size_t)half + 1;
 	double *more = malloc(2 * points * sizeof *more);
-	double misfit = 0.03, change = INFINITY;
+	double misfit = c->estimated ? 0.3 : 0.03, before = INFINITY, change = INFINITY;
 	const struct shape *first = c->shape;
 
 	for (int k = 0; more && k < ROUNDS; k++) {
 		struct shape *better;
+		double chi2 = examples_fit(ex, fmax(misfit, ex->share));
 
-		examples_fit(ex, fmax(misfit, ex->share));
-		if (k > 1 && examples_pulses(ex) > most)
+		if (k > 1 && (examples_pulses(ex) > most || chi2 > 2 * before))
+			break;
+		if (k > 10 && chi2 > CALIBRATE_TOLERABLE)
 			break;
 		if (k > 1 && misfit <= ex->share && change < ex->share)
 			break;
+		before = chi2;
 		mean_residual(ex, more, more + points, half);
 		change = dot(more, more, points) / (c->duration * shape_energy(c->shape));
 		misfit = fmin(0.6 * misfit, FOLLOW * change);

@@ -377,20 +377,30 @@ static void take_first(struct search *s, struct event *e)
 		s->p[k + s->half] = between(s->y[0], s->n, at + k * stretch);
 }
 
-/* How many clear events are alike. */
-static int count_clear(const struct search *s)
+/* How many clear events are alike, and how many are as short as they: pulses stand alone
+ * where events are shortest. */
+static int count_clear(const struct search *s, int *as_short)
 {
 	int clear = 0;
+	double longest = 0;
 
 	for (int i = 0; i < s->count; i++)
-		clear += s->event[i].like && is_clear(&s->event[i]);
+		if (s->event[i].like) {
+			clear += is_clear(&s->event[i]);
+			longest = fmax(longest, s->event[i].length);
+		}
+	*as_short = 0;
+	for (int i = 0; i < s->count; i++)
+		*as_short += is_clear(&s->event[i]) && s->event[i].length <= longest;
 	return clear;
 }
 
 /* Averages the events that equal the one given, then those that equal their mean, a few
- * times; 0 if few are clear. */
+ * times; 0 if few are clear, or most events as short as they differ from them. */
 static int refine(struct search *s, int best)
 {
+	int clear, as_short;
+
 	take_first(s, &s->event[best]);
 	for (int round = 0; round < ROUNDS; round++) {
 		spread_template(s);
@@ -407,7 +417,8 @@ static int refine(struct search *s, int best)
 					  (round ? 1 : 1 + e->a[0] * e->a[0]) +
 						  SIGMAS_NEVER / sqrt(2 * s->half + 1);
 		}
-		if (count_clear(s) < TEMPLATE_LEAST)
+		clear = count_clear(s, &as_short);
+		if (clear < TEMPLATE_LEAST || 2 * clear < as_short)
 			return 0;
 		average(s);
 	}
@@ -621,16 +632,29 @@ static void take_events(const struct search *s, double shift, struct template *t
 	t->duration /= 1 + sorted_quantile(delay, (size_t)t->events, 0.5) / s->transit;
 }
 
-/* Drops events of another width.  *found: 1 if enough are left that have one width. */
+/* Clear events that have to be alike for each one that was dropped.  Where there are
+ * fewer, those left may hold pairs, too: with two dropped beside four, 6 of 35 rows of a
+ * group of Gaussian pulses are wrong; with one beside five and two beside seven none are.
+ */
+enum { MIXED = 3 };
+
+/* Drops events of another width.  *found: 1 if those left have one width.  If any were
+ * dropped, all others as short have to be alike: where no pulse stands alone, pairs of
+ * nearly one distance may be. */
 static enum num_status make_one_width(struct search *s, int white, int *found)
 {
-	int dropped;
+	int dropped, others = 0, as_short, clear;
 
 	do {
 		if (check_widths(s, white, found, &dropped) != NUM_OK)
 			return NUM_MEMORY;
-		if (dropped > 0 && count_clear(s) < TEMPLATE_LEAST)
-			*found = dropped = 0;
+		others += dropped;
+		clear = count_clear(s, &as_short);
+		if (others > 0 && (clear < TEMPLATE_LEAST || clear < MIXED * others ||
+					  clear + others < as_short)) {
+			*found = 0;
+			return NUM_OK;
+		}
 		if (dropped > 0)
 			average(s);
 	} while (dropped > 0);
