@@ -36,6 +36,11 @@ cd "$work"
 export LC_ALL=C
 SCENES=${SCENES:-100}
 
+# detect OPTION ...: in s.au; doubtful rows, status 3, are scored as well
+detect() {
+	duet -S stats.tsv "$@" s.au >found.tsv || [ $? -eq 3 ]
+}
+
 column() {
 	awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i; next }
 	{ print $k }' "$2"
@@ -59,7 +64,7 @@ row() {
 	m=$3
 	gap=$4
 	shift 4
-	duet -S stats.tsv "$@" s.au >found.tsv 2>/dev/null
+	detect "$@" 2>/dev/null
 	"$top/scripts/score" -p "$period" -o 0.01 truth.tsv found.tsv >score.tsv
 	[ "$name" = fit ] && bound=$(awk -v d="$(column delay_rms score.tsv)" \
 		-v r="$(column delay_ratio score.tsv)" 'BEGIN { print (r > 0 ? d / r * 1e4 : "nan") }')
@@ -110,7 +115,7 @@ filtered() {
 			bpfilter --zero-phase -b $order s.au >passed.au
 			mv passed.au s.au
 		fi
-		duet -S stats.tsv --undo "$undo" s.au >found.tsv
+		detect --undo "$undo"
 		"$top/scripts/score" truth.tsv found.tsv >score.tsv
 		for c in matched false delay_ratio size_bias; do
 			printf '%s\t' "$(column $c score.tsv)"
@@ -142,7 +147,7 @@ filtered() {
 		for rate in 50 100 150 200 300; do
 			sensorsim --uniform 80um:120um --number $((20 * rate)) --duration 20s \
 				--snr "${snr}dB" --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
-			duet -S stats.tsv s.au >found.tsv
+			detect
 			"$top/scripts/score" truth.tsv found.tsv >score.tsv
 			awk -v snr=$snr -v rate=$rate -v n="$(column truth score.tsv)" \
 				-v found="$(column matched score.tsv)" \
