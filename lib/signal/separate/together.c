@@ -28,6 +28,7 @@ struct together {
 	size_t rows, all;          /* taken in so far: not doubted, and all */
 	double density;            /* followers per duration */
 	double mean, sd, width;    /* of sizes, and of their kernel */
+	size_t sized;              /* rows when the width was chosen */
 	double limit;              /* probability beyond which rows are doubted */
 };
 
@@ -151,7 +152,8 @@ static double best_width(const struct together *t, double widest)
 }
 
 /* How often pulses follow, and how large they are.  Rows count as far as they are
- * believed; a pulse that follows may hide another one. */
+ * believed; a pulse that follows may hide another one.  The width, which takes the most
+ * time, is chosen again when a sixteenth of the rows are new. */
 static void learn(struct together *t)
 {
 	double n = 0, strong = 0, pairs = 0, mean = 0, square = 0, sum = 0, followed = 0;
@@ -175,6 +177,9 @@ static void learn(struct together *t)
 		     sum / fmax(followed, 1) / (FAR - NEAR);
 	t->mean = mean;
 	t->sd = fmax(sqrt(square / n), 0.01);
+	if (t->sized > 0 && t->rows <= t->sized + evidence_kept(t->rows) / 16)
+		return;
+	t->sized = t->rows;
 	t->width = 1.06 * t->sd * pow(n, -0.2);
 	if (t->density > 0)
 		t->width = best_width(t, t->width);
