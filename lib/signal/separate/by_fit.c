@@ -11,12 +11,11 @@
 static enum separate_status most_pulses(
 	const struct separate *s, long long from, size_t n, int whole, int *most)
 {
-	double values = 4 * SHAPE_BAND * (double)n / s->cal.duration, standing = 0;
+	double values = 4 * SHAPE_BAND * (double)n / s->cal.duration, standing;
 	const struct channels y = channels_at(s, from);
 
-	for (int c = 0; c < 2 && whole; c++)
-		if (standing_count(y.at[c], n, &standing) != NUM_OK)
-			return SEPARATE_MEMORY;
+	if (whole && standing_count(y.at, n, &standing) != NUM_OK)
+		return SEPARATE_MEMORY;
 	values = whole ? fmin(values, standing) : values;
 	*most = (int)fmin(
 		s->par.sources ? s->par.sources : 4 + values / 6, s->par.most_pulses);
