@@ -86,10 +86,8 @@ char *xstrdup(const char *s)
 	return memcpy(xcalloc(size, 1), s, size);
 }
 
-/* Behind a text, which is freed or NULL. */
-static char *print_behind(char *text, const char *format, va_list ap)
+char *xvappend(char *text, size_t *length, size_t *room, const char *format, va_list ap)
 {
-	size_t length = text ? strlen(text) : 0;
 	va_list again;
 	int n;
 
@@ -97,30 +95,35 @@ static char *print_behind(char *text, const char *format, va_list ap)
 	n = vsnprintf(NULL, 0, format, again);
 	va_end(again);
 	if (n < 0)
-		die(EXIT_RUN, "cannot format a message");
-	text = xrealloc(text, length + (size_t)n + 1, 1);
-	vsnprintf(text + length, (size_t)n + 1, format, ap);
+		die(EXIT_RUN, "cannot format text");
+	if (*length + (size_t)n + 1 > *room) {
+		*room = 2 * (*length + (size_t)n + 1);
+		text = xrealloc(text, *room, 1);
+	}
+	vsnprintf(text + *length, (size_t)n + 1, format, ap);
+	*length += (size_t)n;
 	return text;
 }
 
 char *xprintf(const char *format, ...)
 {
+	size_t length = 0, room = 0;
 	va_list ap;
 	char *s;
 
 	va_start(ap, format);
-	s = print_behind(NULL, format, ap);
+	s = xvappend(NULL, &length, &room, format, ap);
 	va_end(ap);
 	return s;
 }
 
 char *xappend(char *text, const char *format, ...)
 {
+	size_t length = text ? strlen(text) : 0, room = 0;
 	va_list ap;
-	char *s;
 
 	va_start(ap, format);
-	s = print_behind(text, format, ap);
+	text = xvappend(text, &length, &room, format, ap);
 	va_end(ap);
-	return s;
+	return text;
 }

@@ -8,6 +8,7 @@
 #ifndef CLI_MSG_H
 #define CLI_MSG_H
 
+#include <stdarg.h>
 #include <stddef.h>
 
 enum {
@@ -33,7 +34,10 @@ void *xrealloc(void *p, size_t count, size_t size);
 char *xstrdup(const char *s);
 /* printf into fresh memory. */
 char *xprintf(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* printf behind a text, which is freed or NULL, into fresh memory. */
+/* printf behind a text, which is moved, or NULL. */
 char *xappend(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The same behind its first *length characters, in memory of *room. */
+char *xvappend(char *text, size_t *length, size_t *room, const char *format, va_list ap)
+	__attribute__((format(printf, 4, 0)));
 
 #endif

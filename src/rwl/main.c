@@ -92,7 +92,7 @@ static void settle(void)
 	if (state_file && new)
 		die(EXIT_USAGE, "--new reads no state, not even %s", state_file);
 	for (size_t i = 0; i < sizeof of_state / sizeof *of_state; i++)
-		if (calibrations.n == 0 && new &&opt_given(of_state[i]))
+		if (opt_given(of_state[i]) && calibrations.n == 0 && new)
 			die(EXIT_USAGE, "--%s requires a state: --new reads none",
 				of_state[i]);
 	for (int i = 1; i < levels.n; i++)
