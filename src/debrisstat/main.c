@@ -3,6 +3,7 @@
 #include "cli/opt.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "common/simulated.h"
 #include "io/input.h"
 #include "io/quantities.h"
 #include "io/tables.h"
@@ -10,7 +11,6 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum output { FITS, STEPS, SIZES, ASPECTS };
 static const char *const outputs[] = { "fits", "steps", "sizes", "aspects", NULL };
@@ -177,28 +177,6 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
-/* What was simulated, also where nothing was worn off, as the comments tell. */
-struct simulated {
-	double highest, realisations, steps;
-};
-
-/* A realisation that occurs again, with another step, is not higher than those before. */
-static void take_comment(void *to, const char *key, const char *value)
-{
-	struct simulated *s = to;
-	char *end;
-	double n = strtod(value, &end);
-
-	if (end == value || *end || !(n >= 0))
-		return;
-	if (strcmp(key, "last_step") == 0 && n <= 1e6) {
-		s->steps = fmax(s->steps, n);
-	} else if (strcmp(key, "realisation") == 0 && n > s->highest) {
-		s->highest = n;
-		s->realisations++;
-	}
-}
-
 /* What a table states of its study; nan: nothing. */
 struct study {
 	double area;     /* nominal, m2 */
@@ -208,9 +186,9 @@ struct study {
 static void read_particles(
 	struct ensemble *e, const char *path, struct study *study, char **cmd)
 {
-	struct simulated simulated = { .highest = -1 };
+	struct simulated simulated = { 0 };
 	struct table_in *t =
-		table_with_comments(input_open(path), take_comment, &simulated);
+		table_with_comments(input_open(path), simulated_comment, &simulated);
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
 	long last = 0;
@@ -236,8 +214,8 @@ static void read_particles(
 	read_summary(&summary, e, LONG_MAX);
 	last = summary.last > last ? summary.last : last;
 	if (!summary.table) {
-		last = (long)fmax((double)last, simulated.steps);
-		check(e, ensemble_simulated(e, simulated.realisations, last));
+		last = simulated.last_step > last ? simulated.last_step : last;
+		check(e, ensemble_simulated(e, (double)simulated.count, last));
 	}
 	/* Steps that did not take place wore nothing off, which is no result. */
 	if (range.n > 0 && range.v[range.n - 1] > (double)last)

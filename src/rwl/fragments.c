@@ -1,6 +1,7 @@
 #include "fragments.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/simulated.h"
 #include "io/input.h"
 #include "io/quantities.h"
 #include "pump_options.h"
@@ -26,30 +27,7 @@ struct wear {
 	const char *file;                        /* as given */
 	int realisation, step, volume, diameter; /* columns */
 	int class;
-	long lowest, highest,
-		last_step; /* simulated, as the comments tell; -1: unknown */
 };
-
-/* What of a particle table was simulated, also where nothing was shed. */
-static void take_comment(void *to, const char *key, const char *value)
-{
-	struct wear *w = to;
-	int realisation = strcmp(key, "realisation") == 0;
-	char *end;
-	long n;
-
-	if (!realisation && strcmp(key, "last_step") != 0)
-		return;
-	n = strtol(value, &end, 10);
-	if (end == value || *end || n < 0 || (double)n > (realisation ? 1e15 : 1e6))
-		return;
-	if (!realisation) {
-		w->last_step = n > w->last_step ? n : w->last_step;
-		return;
-	}
-	w->lowest = w->highest < 0 || n < w->lowest ? n : w->lowest;
-	w->highest = n > w->highest ? n : w->highest;
-}
 
 static _Noreturn void apart(const struct partition *p, const char *file)
 {
@@ -152,7 +130,8 @@ static void read_wear(
 	char *file = xstrdup(option);
 	double pressure = NAN, area = -1;
 	int with_area;
-	struct wear w = { .file = file, .lowest = -1, .highest = -1, .last_step = -1 };
+	struct wear w = { .file = file };
+	struct simulated simulated = { 0 };
 	struct physics told;
 	long part;
 	enum partition_status status;
@@ -169,7 +148,7 @@ static void read_wear(
 		die(EXIT_USAGE, "--wear %s: want a pressure above 0", option);
 	if (with_area && !(area > 0 && isfinite(area)))
 		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
-	w.table = table_with_comments(input_open(file), take_comment, &w);
+	w.table = table_with_comments(input_open(file), simulated_comment, &simulated);
 	told = physics_of(w.table);
 	check_options(option, &told, pressure, distance);
 	if (isnan(pressure))
@@ -194,9 +173,9 @@ static void read_wear(
 		partition_part(p, w.class, part);
 		read_row(p, &w, row);
 	}
-	if (w.highest >= 0) {
-		partition_simulated(p, w.class, w.lowest, w.last_step);
-		partition_simulated(p, w.class, w.highest, w.last_step);
+	if (simulated.count > 0) {
+		partition_simulated(p, w.class, simulated.lowest, simulated.last_step);
+		partition_simulated(p, w.class, simulated.highest, simulated.last_step);
 	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
