@@ -6,8 +6,8 @@
 #include "io/formats.h"
 #include "io/gsf.h"
 #include "io/kinds.h"
+#include "io/magnitudes.h"
 #include "io/nrrd.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -60,23 +60,19 @@ struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
 	return in;
 }
 
-/* Headerless samples do not state their type.  Integers, and numbers of the other byte
- * order, have random exponents if taken for float64; heights of float32 below a
- * millimetre are then below 1e-26. */
+/* Heights of float32 below a millimetre are below 1e-26 if taken for float64. */
 static void check_magnitudes(const struct place *at, const struct record *r)
 {
-	size_t n = record_points(r), huge = 0;
-	double most = 0;
+	struct magnitudes m = { 0 };
 
 	for (int k = 0; k < r->nfields; k++)
-		for (size_t i = 0; r->data[k] && i < n; i++) {
-			huge += fabs(r->data[k][i]) > 1e100;
-			most = fmax(most, fabs(r->data[k][i]));
-		}
-	if (huge > n / 100 || (most > 0 && most < 1e-20))
+		if (r->data[k])
+			magnitudes_add(&m, r->data[k], record_points(r));
+	m.samples = (double)record_points(r); /* a hundredth of one field is too many */
+	if (magnitudes_absurd(&m, 1e-20))
 		die(EXIT_RUN,
 			"%s: record %ld: samples of up to %.2g: not little-endian float64?",
-			at->name, at->record, most);
+			at->name, at->record, m.most);
 }
 
 static void read_raw(struct fields_in *in, struct record *r)

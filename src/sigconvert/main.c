@@ -5,6 +5,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "io/magnitudes.h"
 #include "io/signals.h"
 #include "moment.h"
 #include "recording.h"
@@ -87,26 +88,9 @@ static void convert_table(const char *path, const struct recording_par *par)
 	text_close(in);
 }
 
-/* Raw samples do not state their type.  Integers, and numbers of the other byte order,
- * have random exponents if taken for float64, or where their last bytes are 0 the least
- * ones. */
-struct magnitudes {
-	double samples, huge, most;
-};
-
-static void measure(struct magnitudes *m, const double *x, size_t n)
-{
-	m->samples += (double)n;
-	for (size_t i = 0; i < n; i++) {
-		m->huge += fabs(x[i]) > 1e100;
-		m->most = fmax(m->most, fabs(x[i]));
-	}
-}
-
 static int is_absurd(const struct magnitudes *m)
 {
-	if (from != FROM_RAW ||
-		(m->huge <= 0.01 * m->samples && (m->most == 0 || m->most > 1e-100)))
+	if (from != FROM_RAW || !magnitudes_absurd(m, 1e-100))
 		return 0;
 	warn("%.2g of the samples are above 1e100, and the largest is %.2g: not "
 	     "little-endian float64?",
@@ -148,7 +132,7 @@ int main(int argc, char **argv)
 		out = recording_create((enum recording_to)to, &format);
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
-		measure(&magnitudes, x, n * (size_t)format.channels);
+		magnitudes_add(&magnitudes, x, n * (size_t)format.channels);
 		for (size_t i = 0; i < n * (size_t)format.channels; i++)
 			x[i] *= scale;
 		if (table)
