@@ -448,9 +448,16 @@ static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 								  : SEPARATE_NO_LAG;
 }
 
-/* SWAPPED if pulses describe the record with its channels exchanged, and better than as
- * they are: among few pulses two particles may look like one that passes sensor 2 first.
- * Otherwise learns as if none did. */
+/* Range of the delays, in durations. */
+static double delays_of(const struct calibration *c)
+{
+	return (c->delta_max - c->delta_min) / c->duration;
+}
+
+/* SWAPPED if pulses describe the record with its channels exchanged, unless they describe
+ * it as it is with a narrower range of delays: among few pulses two particles may look
+ * like one that passes sensor 2 first, and where any delay is allowed there are always
+ * two.  Otherwise learns as if none did. */
 static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
@@ -473,7 +480,8 @@ static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 	status = calibrate(&known, x1, x2, n, c);
 	c->work += exchanged.work;
 	if (describes && status != SEPARATE_MEMORY &&
-		(status != SEPARATE_OK || exchanged.penalised < c->penalised)) {
+		!(status == SEPARATE_OK && learn_describes(c) &&
+			delays_of(c) < delays_of(&exchanged))) {
 		if (status == SEPARATE_OK)
 			calibration_clear(c);
 		status = SEPARATE_SWAPPED;
