@@ -36,6 +36,15 @@ for type in swapped integers; do
 	sigconvert --from raw --rate 10kHz --channels 2 $type.raw 2>err >out
 	is "raw samples that are $type are doubted" "$? $(grep -c 'not little-endian float64?' err)" "3 1"
 done
+# float32 as a sound card delivers them; float64 that are 0 but for one sample in fifty,
+# or that were float32 before, whose last bits are 0, are none
+perl -e 'srand 3; print pack "f<*", map { rand() - 0.5 } 1 .. 2000' >single.raw
+sigconvert --from raw --rate 10kHz --channels 2 single.raw 2>err >out
+is "raw samples of float32 are doubted" "$? $(grep -c 'look like float32' err)" "3 1"
+perl -e 'srand 3; print pack "d<*", map { $_ % 50 ? 0 : rand() - 0.5 } 1 .. 10000' >sparse.raw
+ok "rare pulses of float64 are not float32" sigconvert --from raw --rate 10kHz --channels 2 sparse.raw
+perl -e 'srand 3; print pack "d<*", map { unpack "f", pack "f", rand() - 0.5 } 1 .. 2000' >wide.raw
+ok "float64 of 24 significant bits are not float32" sigconvert --from raw --rate 10kHz --channels 2 wide.raw
 is "the header records the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
 
 printf 'Time [ms];Flow [L/min];"u1 [mV]";u2 (V)\r\n0,0;60;1500,5;2\r\n0,5;61;-20;nan\r\n1,0;60;3;4\r\n' >daq.csv

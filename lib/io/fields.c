@@ -69,6 +69,11 @@ static void check_magnitudes(const struct place *at, const struct record *r)
 		if (r->data[k])
 			magnitudes_add(&m, r->data[k], record_points(r));
 	m.samples = (double)record_points(r); /* a hundredth of one field is too many */
+	if (magnitudes_single(&m))
+		die(EXIT_RUN,
+			"%s: record %ld: the samples look like float32: want "
+			"little-endian float64",
+			at->name, at->record);
 	if (magnitudes_absurd(&m, 1e-20))
 		die(EXIT_RUN,
 			"%s: record %ld: samples of up to %.2g: not little-endian float64?",

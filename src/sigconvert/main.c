@@ -90,7 +90,14 @@ static void convert_table(const char *path, const struct recording_par *par)
 
 static int is_absurd(const struct magnitudes *m)
 {
-	if (from != FROM_RAW || !magnitudes_absurd(m, 1e-100))
+	if (from != FROM_RAW)
+		return 0;
+	if (magnitudes_single(m)) {
+		warn("the samples look like float32: --from raw wants little-endian "
+		     "float64");
+		return 1;
+	}
+	if (!magnitudes_absurd(m, 1e-100))
 		return 0;
 	warn("%.2g of the samples are above 1e100, and the largest is %.2g: not "
 	     "little-endian float64?",
