@@ -115,6 +115,23 @@ is 'a stream that cannot be stored fails' "$? $(column chunk full/chunks.tsv | t
 	'1 0 wearwatch: full/spool: the stream cannot be stored'
 fails 'other options for the same state' 1 'made with other options' \
 	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au
+fails 'other options of duet for the same state' 1 'made with other options' watch --state whole --duet '--calibration 9' hours.au
+# A clock that is set back by an hour after the first of six chunks.  Each page asks date -u:
+# after the first chunk, the second, the last whole one and the last one.
+mkdir clock
+cat >clock/date <<'END'
+#!/bin/sh
+if [ "$1" = -u ]; then
+	echo page >>pages
+	PATH=${PATH#*:} exec date "$@"
+fi
+echo x >>seconds
+[ "$(wc -l <seconds)" -gt 1 ] && echo 1000000000 || echo 1000003600
+END
+chmod +x clock/date
+PATH=$PWD/clock:$PATH watch --state back --refresh 1h hours.au
+is 'a clock that is set back does not stop the page' "$(wc -l <pages | tr -d ' ')" 4
+rm -r clock
 sensorsim --duration 6s --noise 10mV --seed 2 particles.tsv >other.au
 fails 'another recording for the same state' 1 'not the recording' watch --state whole other.au
 printf 'a,b\n1,2\n' >table.csv
@@ -122,6 +139,9 @@ fails 'a table' 1 'neither AU nor WAV; sigconvert' watch --state other table.csv
 fails 'an empty stream' 1 'empty' watch --state other
 fails 'no state' 2 'want --state' wearwatch hours.au
 fails 'a time without a number' 2 'want a time above 0' wearwatch --state other --chunk x hours.au
+fails 'a time beyond a lifetime' 2 'want a time above 0, .*, to 1e9 s' wearwatch --state other --chunk 1e20s hours.au
+ok 'a page is renewed once a second at most' watch --state soon --refresh 1e-5s hours.au
+is 'a page that is renewed often is written without a word' "$(cat err)" ''
 fails 'an overlap as long as a chunk' 2 'less than a chunk' wearwatch --state other --chunk 1s --overlap 1s hours.au
 fails 'alarms of a life without an end' 2 'requires --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
 fails 'an alarm that clears above its level' 2 'CLEAR not above LEVEL' wearwatch --state other --alarm-rate 7:8 hours.au
