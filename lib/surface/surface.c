@@ -22,43 +22,48 @@ size_t surface_missing(int nx, int ny, const double *z)
 struct holes {
 	size_t nx, ny, n;
 	size_t *place;
-	size_t *index; /* of a sample: its unknown, or n where it is known */
+	size_t *index;        /* of a sample: its unknown, or n where it is known */
+	double along, across; /* weights of the neighbours along x and y */
 	double *x, *r, *p, *q;
 };
 
+struct neighbour {
+	size_t place;
+	double weight;
+};
+
 /* Neighbours of a sample; returns how many. */
-static int neighbours(const struct holes *h, size_t place, size_t next[4])
+static int neighbours(const struct holes *h, size_t place, struct neighbour next[4])
 {
 	size_t ix = place % h->nx, iy = place / h->nx;
 	int n = 0;
 
 	if (ix > 0)
-		next[n++] = place - 1;
+		next[n++] = (struct neighbour){ place - 1, h->along };
 	if (ix + 1 < h->nx)
-		next[n++] = place + 1;
+		next[n++] = (struct neighbour){ place + 1, h->along };
 	if (iy > 0)
-		next[n++] = place - h->nx;
+		next[n++] = (struct neighbour){ place - h->nx, h->across };
 	if (iy + 1 < h->ny)
-		next[n++] = place + h->nx;
+		next[n++] = (struct neighbour){ place + h->nx, h->across };
 	return n;
 }
 
-/* y = graph Laplacian of the unknowns times v; with z, known neighbours count too. */
+/* y = -dx dy times the Laplacian of the unknowns v: the fluxes through the sides of the
+ * cells; with z, known neighbours count too. */
 static void laplacian(const struct holes *h, const double *v, const double *z, double *y)
 {
-	size_t next[4];
+	struct neighbour next[4];
 
 	for (size_t k = 0; k < h->n; k++) {
 		int n = neighbours(h, h->place[k], next);
-		double sum = n * v[k];
+		double sum = 0;
 
 		for (int j = 0; j < n; j++) {
-			size_t m = h->index[next[j]];
+			size_t m = h->index[next[j].place];
+			double there = m < h->n ? v[m] : z ? z[next[j].place] : 0;
 
-			if (m < h->n)
-				sum -= v[m];
-			else if (z)
-				sum -= z[next[j]];
+			sum += next[j].weight * (v[k] - there);
 		}
 		y[k] = sum;
 	}
@@ -95,10 +100,15 @@ static int solve_holes(struct holes *h, const double *z, double *residual)
 	return step;
 }
 
-enum num_status surface_fill(int nx, int ny, double *z, int *iterations, double *residual)
+enum num_status surface_fill(int nx, int ny, double dx, double dy, double *z,
+	int *iterations, double *residual)
 {
 	size_t n = grid_size(nx, ny), missing = surface_missing(nx, ny, z), k = 0;
-	struct holes h = { .nx = (size_t)nx, .ny = (size_t)ny, .n = missing };
+	struct holes h = { .nx = (size_t)nx,
+		.ny = (size_t)ny,
+		.n = missing,
+		.along = dy / dx,
+		.across = dx / dy };
 	enum num_status status = NUM_MEMORY;
 	double mean = 0;
 

@@ -22,8 +22,8 @@ size_t surface_missing(int nx, int ny, const double *z);
  * *iterations counts conjugate-gradient steps, *residual receives the residual over the
  * first one; above SURFACE_FILLED the iteration stopped before it converged. */
 #define SURFACE_FILLED 1e-13
-enum num_status surface_fill(
-	int nx, int ny, double *z, int *iterations, double *residual);
+enum num_status surface_fill(int nx, int ny, double dx, double dy, double *z,
+	int *iterations, double *residual);
 
 /* Subtracts the least-squares plane. */
 void surface_level(int nx, int ny, double *z);

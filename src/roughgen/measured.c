@@ -125,7 +125,7 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 	if (missing == n)
 		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
 			fields_count(in));
-	need_memory(surface_fill(s->nx, s->ny, z, &steps, &residual));
+	need_memory(surface_fill(s->nx, s->ny, s->dx, s->dy, z, &steps, &residual));
 	if (!(residual <= SURFACE_FILLED))
 		die(EXIT_RUN,
 			"%s: record %ld: --fill stopped at a residual of %.2g after %d steps",

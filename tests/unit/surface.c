@@ -95,7 +95,15 @@ static void check_small(void)
 		"for slopes of 1e-9 Sdr is half of Sdq squared and not lost");
 }
 
-static void check_fill(void)
+/* Second differences of a polynomial of second order are exact in cells of any sides. */
+static double harmonic(int ix, int iy, double dx, double dy)
+{
+	double x = ix * dx, y = iy * dy;
+
+	return 1 + x * x - y * y + 0.5 * x * y;
+}
+
+static void check_fill(double dx, double dy)
 {
 	enum { NX = 21, NY = 17 };
 	double z[NX * NY], worst = 0, residual;
@@ -103,31 +111,30 @@ static void check_fill(void)
 
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
-			z[iy * NX + ix] = 1 + ix * ix - iy * iy + 0.5 * ix * iy;
+			z[iy * NX + ix] = harmonic(ix, iy, dx, dy);
 	for (int iy = 4; iy < 12; iy++)
 		for (int ix = 3; ix < 17; ix++)
 			z[iy * NX + ix] = NAN;
 	z[14 * NX + 5] = NAN;
 	ok(surface_missing(NX, NY, z) == 8 * 14 + 1, "missing samples are counted");
-	ok(surface_fill(NX, NY, z, &steps, &residual) == NUM_OK && steps > 0,
+	ok(surface_fill(NX, NY, dx, dy, z, &steps, &residual) == NUM_OK && steps > 0,
 		"a hole is filled");
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
 			worst = tap_max(
-				worst, fabs(z[iy * NX + ix] -
-					       (1 + ix * ix - iy * iy + 0.5 * ix * iy)));
+				worst, fabs(z[iy * NX + ix] - harmonic(ix, iy, dx, dy)));
 	near(worst, 0, 1e-9, "filling restores a discrete harmonic function");
 	/* A hole at the rim has no slope across it: one known column spreads. */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i % NX ? NAN : 4;
-	surface_fill(NX, NY, z, &steps, &residual);
+	surface_fill(NX, NY, dx, dy, z, &steps, &residual);
 	near(z[NX * NY - 1], 4, 1e-9,
 		"filling continues the last known column as a constant");
 	ok(residual <= SURFACE_FILLED, "filling returns the residual (%.1e)", residual);
 	/* The numbers leave the range of doubles: no result, and the residual says so. */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i % NX ? NAN : i % 2 ? 1e300 : -1e300;
-	surface_fill(NX, NY, z, &steps, &residual);
+	surface_fill(NX, NY, dx, dy, z, &steps, &residual);
 	ok(!(residual <= SURFACE_FILLED), "filling reports an iteration that fails");
 }
 
@@ -282,7 +289,8 @@ int main(void)
 	check_sine();
 	check_plane();
 	check_small();
-	check_fill();
+	check_fill(1, 1);
+	check_fill(2.6, 0.7);
 	check_resample();
 	check_crown();
 	check_correlation();
