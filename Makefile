@@ -105,7 +105,7 @@ UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: check-cluster all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
+.PHONY: check-cluster all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -287,10 +287,12 @@ $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
 
+# The folders may differ from those of the last installation.
+pc_folder = -e "s|@$(1)@|$(subst &,\&,$($(1)))|"
 $(B)/install/wearpipe.pc: wearpipe.pc.in Makefile FORCE
 	@mkdir -p $(@D)
-	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
-		-e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in >$@
+	@case "$(PREFIX)" in /*) ;; *) echo "PREFIX=$(PREFIX): want an absolute path" >&2; exit 1 ;; esac
+	@sed $(foreach v,PREFIX LIBDIR INCLUDEDIR VERSION,$(call pc_folder,$(v))) wearpipe.pc.in >$@
 FORCE:
 
 COMPLETIONS = $(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish

@@ -138,6 +138,14 @@ else
 		fail 'the archive links with the libraries that pkg-config names' "$(head err)"
 	fi
 fi
+# Installed again elsewhere; pkg-config finds the second library, not the first.
+make -s -C "$top" install DESTDIR="$work/second" PREFIX='/opt/x&y' >out 2>err
+is 'a second installation has its own folders' "$(head -n 1 "$work/second/opt/x&y/lib/pkgconfig/wearpipe.pc")" 'prefix=/opt/x&y'
+if make -s -C "$top" install DESTDIR="$work/third/" PREFIX=relative >out 2>err; then
+	fail 'a relative prefix is refused'
+else
+	like 'a relative prefix is refused' "$(cat err)" 'PREFIX=relative: want an absolute path'
+fi
 ok 'make uninstall succeeds' make -s -C "$top" uninstall DESTDIR="$root" PREFIX=/usr
 is 'make uninstall leaves no file' "$(find "$root" -type f -o -type l)" ''
 done_testing
