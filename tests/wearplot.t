@@ -54,6 +54,23 @@ picture 'particles by size' 'diameter, um' found.tsv
 is 'doubtful particles are not counted' "$(printf 'diameter\tverdict\n2e-4\tmisfit\n3e-4\tmisfit\n' |
 	wearplot 2>&1)" 'wearplot: standard input: no particle with a diameter'
 
+printf '# units: um 1\ndiameter\tverdict\n100\talone\n200\talone\n' >um.tsv
+printf 'diameter\tverdict\n1e-4\talone\n2e-4\talone\n' >m.tsv
+wearplot m.tsv >m.svg
+wearplot um.tsv >um.svg
+same 'diameters are drawn in micrometres, whatever their unit' m.svg um.svg
+sed '1s/um/in/' um.tsv >in.tsv
+fails 'a unit that is no length is refused' 1 "in.tsv: column 'diameter' is in 'in', want m" wearplot in.tsv
+# 0.4 Hz, of which the header has 1; a level of 2.5 V, at which the end mark, near 0 V, is none
+perl -e 'print "time\tu\n"; printf "%g\t%g\n", 2.5 * $_, 2.5 + 0.001 * ($_ % 2) for 0 .. 99' | sigconvert --rate 0.4 >slow.au
+wearplot slow.au | tr -d '\n' | sed 's/<[^>]*>/ /g' >text
+is 'a rate below one per second has its times' "$(grep -c ' 250 .*time, s' text)" 1
+is 'the end mark is not drawn' "$(tr -s ' \t' '  ' <text | grep -c ' 0 2 4 .*channel 1')" 0
+if [ -c /dev/full ]; then
+	fails 'a full disk is refused' 1 'standard output: cannot be written' sh -c 'wearplot slow.au >/dev/full'
+	ln -s /dev/full full.svg
+	fails 'a full disk is refused' 1 'full.svg: cannot be written' wearplot --output full.svg slow.au
+fi
 fails 'an unknown table is refused by its columns' 1 'no picture for the columns a b' \
 	sh -c 'printf "a\tb\n1\t2\n" | wearplot'
 fails 'an empty stream' 1 'standard input: empty' wearplot
