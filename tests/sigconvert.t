@@ -238,6 +238,8 @@ fails "a missing column is named with those of the table" 1 "no column 'Leak' am
 	sigconvert --output table --columns Leak pump.csv
 printf 'Time,Flow\n0,1.234,5\n' >thousand.csv
 fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --output table thousand.csv
+printf 'Time;Flow\n0;999.5\n1;1,234\n' >thousand.csv
+fails "a separator of thousands among decimal points" 1 "line 3: '1,234': decimal points and commas in one file" sigconvert thousand.csv
 printf 'Time;Flow\n0;1.234,5\n' >thousand.csv
 fails "a separator of thousands in a CSV with semicolons" 1 "line 2: Flow: '1.234,5' is not a number" sigconvert --output table thousand.csv
 printf 'Time;Flow\n' >empty.csv

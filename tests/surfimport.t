@@ -219,6 +219,9 @@ printf '1 2\n3 x\n' >word.txt
 fails "a word among heights" 1 'line 2: not a row of numbers: 3 x' surfimport --pixel 1um --height-unit 1m word.txt
 printf '1 0x10\n' >hexadecimal.txt
 fails "a hexadecimal number" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m hexadecimal.txt
+printf '1,5;2;3\n1.234;5;6\n' >thousands.csv
+fails "thousands separators among decimal commas" 1 'line 2: not a row of numbers: 1.234;5;6' \
+	surfimport --pixel 1um --height-unit 1m thousands.csv
 printf '1.234,5;2;3\n4;5;6\n' >thousands.csv
 fails "thousands separators in the first row" 1 'line 1: not a row of numbers: 1.234,5' \
 	surfimport --pixel 1um --height-unit 1m thousands.csv

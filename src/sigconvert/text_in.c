@@ -23,7 +23,8 @@ struct text_in {
 	size_t room, most;
 	long number; /* of the line */
 	char separator;
-	int commas; /* decimal commas are possible */
+	int commas;   /* decimal commas are possible */
+	char decimal; /* of the numbers so far, 0: none had one */
 	int cells;
 	char **heading, **cell; /* names of the columns, and the present row */
 	char **unit;            /* of each cell's heading, NULL: none */
@@ -150,17 +151,29 @@ static int has(char *line, const char *text)
 	return 0;
 }
 
-static int number(const struct text_in *t, char *s, double *v)
+/* A comma in a file of decimal points separates thousands: 1,234 is not 1.234. */
+static int number(struct text_in *t, char *s, double *v)
 {
-	char *end;
+	char *end, *point = strchr(s, '.');
+	char decimal = point ? '.' : '\0';
 
 	*v = NAN;
 	if (!*s || !strcmp(s, "nan") || !strcmp(s, "NaN") || !strcmp(s, "NA"))
 		return 1;
-	if (t->commas && strchr(s, ',') && !strchr(s, '.'))
-		*strchr(s, ',') = '.';
+	if (t->commas && !point && (point = strchr(s, ','))) {
+		decimal = ',';
+		*point = '.';
+	}
 	*v = decimal_parse(s, &end);
-	return end != s && !*end;
+	if (end == s || *end)
+		return 0;
+	if (t->decimal && decimal && decimal != t->decimal)
+		die(EXIT_RUN,
+			"%s: line %ld: '%.*s%c%s': decimal points and commas in one file",
+			t->name, t->number, (int)(point - s), s, decimal, point + 1);
+	if (decimal)
+		t->decimal = decimal;
+	return 1;
 }
 
 /* The unit in "Flow [L/min]" or "u (mV)", removed from the heading; NULL if there is

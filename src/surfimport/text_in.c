@@ -101,6 +101,9 @@ static int cell(const struct text *t, char *s, double *v)
 		*v = NAN;
 		return 1;
 	}
+	/* among decimal commas a point separates thousands */
+	if (t->comma && strchr(s, '.'))
+		return 0;
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
 	*v = decimal_parse(s, &end);
