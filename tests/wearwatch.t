@@ -106,6 +106,10 @@ sigconvert --output wav hours.au >hours.wav
 is 'a stream ends where its samples end' "$? $(cat said)" '0 '
 watch --state filed hours.wav
 same 'what follows the samples of a stream is none' listed/chunks.tsv filed/chunks.tsv
+# A chunk of five bytes, and one of padding, before the format
+{ head -c 12 hours.wav && printf 'JUNK\005\0\0\0abcde\0' && tail -c +13 hours.wav; } >junk.wav
+watch --state junk junk.wav
+same 'chunks of a WAV file may be of odd sizes' junk/chunks.tsv filed/chunks.tsv
 printf 'RIFF\0\0\0\0WAVEfmt \020\0\0\0\003\0\002\0\020\047\0\0\200\070\001\0\010\0\040\0data\0\0\0\0' >narrow.wav
 fails 'samples of another width for the same state' 1 'made with other options or of another stream: wav 3 8' \
 	watch --state listed narrow.wav
