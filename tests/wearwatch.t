@@ -31,6 +31,13 @@ is 'pulses of the other sign are doubted as non-ferrous' "$? $(grep -c 'pulses h
 near 'all pulses of the other sign are counted' "$(column doubts copper/chunks.tsv | tr ',' '\n' | awk -F : '/^signs/ { n += $2 } END { print n }')" \
 	"$(column amplitude copper.tsv | awk '$1 < 0' | wc -l | tr -d ' ')" 1
 
+# The header has 2000 Hz for 2000.4, by which the last particles would be 1 ms late
+sensorsim --rate 2000.4 --duration 6s --noise 10mV particles.tsv >fraction.au
+watch --scale 1 --state fraction fraction.au
+duet fraction.au | column time1 - >of_duet
+near 'a rate with a fraction has its times' "$(column time1 fraction/particles.tsv | paste of_duet - | awk '
+	{ d = $1 - $2; if (d < 0) d = -d; if (d > most) most = d } END { print (NR > 20 ? most : 1) }')" 0 2e-4
+
 # Live, as a pipe: killed with all its children in the third hour, when a tenth of a second
 # of the fourth is there; then started again with what comes after.
 skip=$(od -An -tu1 -j4 -N4 hours.au | awk '{ print $3 * 256 + $4 }')

@@ -117,7 +117,8 @@ static char *annotated(const char *text, const char *key)
 	return NULL;
 }
 
-/* The header has room only for whole numbers: other rates are also in the annotation. */
+/* The header has room only for whole numbers: signals of the suite have other rates in
+ * the annotation too. */
 static uint32_t whole_rate(double rate)
 {
 	return rate < 1 ? 1 : (uint32_t)(rate + 0.5);
@@ -128,7 +129,7 @@ static void take_rate(struct signal_in *in, const char *text)
 	char *told = annotated(text, "rate"), *end = told;
 	double rate = told ? strtod(told, &end) : NAN;
 
-	if (in->promised && told) {
+	if (told) {
 		if (end == told || *end || !(rate > 0) ||
 			whole_rate(rate) != (uint32_t)in->format.rate)
 			die(EXIT_RUN, "%s: rate '%.40s' in a signal of %g Hz", in->name,
@@ -150,6 +151,7 @@ static void read_header(struct signal_in *in)
 	unsigned char b[HEADER_MIN];
 	size_t got = input_read(in->in, b, HEADER_MIN);
 	char *text, *promise;
+	int own; /* a signal of the suite */
 
 	if (got < HEADER_MIN || memcmp(b, ".snd", 4) != 0)
 		kind_refuse(in->name, b, got, KIND_SIGNAL);
@@ -192,15 +194,16 @@ static void read_header(struct signal_in *in)
 	in->format.single = encoding != FLOAT64 && encoding != PCM32;
 	text = read_annotation(in, header - HEADER_MIN);
 	promise = annotated(text, "stream");
-	in->promised = promise && !strcmp(promise, ENDS_PROMISE) && size == unknown &&
-		       encoding >= FLOAT32;
+	own = promise && !strcmp(promise, ENDS_PROMISE);
+	in->promised = own && size == unknown && encoding >= FLOAT32;
 	free(promise);
 	in->format.cmd = annotated(text, "cmd");
 	in->format.units = annotated(text, "units");
 	in->format.seed = annotated(text, "seed");
 	in->format.filter = annotated(text, "filter");
 	in->format.start = annotated(text, "start");
-	take_rate(in, text);
+	if (own)
+		take_rate(in, text);
 	free(text);
 }
 
