@@ -294,8 +294,19 @@ for option in '--shear y' '--removal potential' '--depth-step 5um'; do
 	# shellcheck disable=SC2086 # words
 	fails "a particle is cut off with $option" 3 'cut off at the border' $wear $option cut.nrrd
 done
+# The exit status is lost in a pipe: the tables say it, each of its realisations.
+cat cut.nrrd cut.nrrd >twice.nrrd
+$wear twice.nrrd 2>err >cut.tsv
+is "the table says which realisations are cut off" "$(sed -n 's/^# doubtful: //p' cut.tsv | tr '\n' ';')" \
+	'realisation 0: particles are cut off at the border of the grid;realisation 1: particles are cut off at the border of the grid;'
+fails "debrisstat gives status 3 for particles that are cut off" 3 'doubtful by its own account: realisation 1: particles are cut off' \
+	debrisstat cut.tsv
+is "the statistics of doubtful particles are doubtful" "$(grep -c '^# doubtful: realisation 1' out)" 1
+fails "debriscount gives status 3 for particles that are cut off" 3 'doubtful by its own account' debriscount --duration 1s --volume 1mL \
+	cut.tsv
 $wear --boundary periodic cut.nrrd >t.tsv 2>err
 is "a periodic grid cuts no particle off" "$? $(cat err)" "0 "
+is "the table of sound particles says nothing" "$(grep -c doubtful t.tsv)" 0
 
 # A ridge that goes round a periodic grid has no end, and so no length.
 perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",

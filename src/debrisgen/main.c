@@ -19,6 +19,8 @@ enum { RESERVE = 256 << 20 };
 /* From half of the load on, the contact is mostly with what the grid has cut off. */
 static const double EDGE_MOST = 0.5;
 
+static const char not_converged[] = "a contact did not converge";
+
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
 
@@ -57,7 +59,15 @@ struct run {
 	struct wearing *wearing;
 	struct worn *out; /* NULL before the first record */
 	int status;
+	const char *doubt; /* why the present record is doubtful, NULL: it is not */
 };
+
+/* The table says it too, since the exit status is lost in a pipe. */
+static void doubt(struct run *run, const char *why)
+{
+	run->status = EXIT_NOCONV;
+	run->doubt = why;
+}
 
 /* One surface during its steps. */
 struct scene {
@@ -109,7 +119,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 			fields_name(run->in), fields_count(run->in), r->nz);
 	if (!wearing_solves(run->wearing, 1) &&
 		!press_given(r, fields_name(run->in), fields_count(run->in)))
-		run->status = EXIT_NOCONV;
+		doubt(run, not_converged);
 	crown = record_get_number(r, "crown");
 	sq = record_get_number(r, "sq");
 	if (record_find(r, "pressure") < 0 && wearing_solves(run->wearing, 1))
@@ -154,6 +164,8 @@ static int check_contact(struct run *run, struct scene *c, long step)
 
 	wearing_contact(run->wearing, &c->now, &s);
 	note_edge(&run->edge, s.edge_load, EDGE_LOAD, c, step);
+	if (s.edge_load > EDGE_MOST)
+		doubt(run, "the outermost cells carry most of the load");
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
 	warn("%s: realisation %ld: stopped before step %ld: %.3g of the cells in contact, "
@@ -174,7 +186,7 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 	warn("%s: realisation %ld, step %ld: %zu of %zu particles connect to themselves across the periodic grid: their shape is nan",
 		fields_name(run->in), c->now.r->realisation, s->number, endless,
 		s->lost->count);
-	run->status = EXIT_NOCONV;
+	doubt(run, "particles connect to themselves across the periodic grid");
 	stats_add("particles_endless", (double)endless);
 }
 
@@ -189,6 +201,8 @@ static void check_border(
 		if (body[k] && body[k]->volume > 0)
 			most = fmax(most, body[k]->beyond / body[k]->volume);
 	note_edge(&run->border, most, DEBRIS_BEYOND, c, s->number);
+	if (most > DEBRIS_BEYOND)
+		doubt(run, "particles are cut off at the border of the grid");
 }
 
 static void wear_step(struct run *run, const struct scene *c, long step)
@@ -199,7 +213,7 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 		wearing_step(run->wearing, &c->now, c->target, length, step, &solved);
 
 	if (!solved)
-		run->status = EXIT_NOCONV;
+		doubt(run, not_converged);
 	check_ends(run, c, &s);
 	check_border(run, c, &s);
 	s.length = length;
@@ -231,6 +245,7 @@ static void wear_record(struct run *run, struct record *r)
 	struct worn_conditions conditions;
 	long k;
 
+	run->doubt = NULL;
 	open_scene(run, r, &c);
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
@@ -238,17 +253,19 @@ static void wear_record(struct run *run, struct record *r)
 		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
-			run->status = EXIT_NOCONV;
+			doubt(run, not_converged);
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
 			if (k == 1)
-				run->status = EXIT_NOCONV;
+				doubt(run, "most of the cells are in contact");
 			break;
 		}
 		wear_step(run, &c, c.done + k);
 	}
 	if (k > 1)
 		worn_end(run->out, r->realisation, c.done + k - 1);
+	if (run->doubt)
+		worn_doubt(run->out, r->realisation, run->doubt);
 }
 
 static void warn_of_edge(struct run *run)
@@ -256,8 +273,6 @@ static void warn_of_edge(struct run *run)
 	const struct edge *e = &run->edge;
 
 	stats_add("edge_load_steps", (double)e->steps);
-	if (e->most > EDGE_MOST)
-		run->status = EXIT_NOCONV;
 	if (e->steps)
 		warn("%s: %ld steps with more than 5 %% of the load on the outermost "
 		     "cells, worst %.0f %% (realisation %ld, step %ld): use a larger area, "
@@ -273,7 +288,6 @@ static void warn_of_border(struct run *run)
 	stats_add("border_steps", (double)e->steps);
 	if (!e->steps)
 		return;
-	run->status = EXIT_NOCONV;
 	warn("%s: %ld steps whose particles are cut off at the border of the grid, where up "
 	     "to %.0f %% more volume is lost (realisation %ld, step %ld): use a larger "
 	     "area, roughgen --crown auto, or --boundary periodic",

@@ -419,6 +419,14 @@ void worn_end(struct worn *w, long realisation, long step)
 	table_comment(w->particles, "last_step", "%ld", step);
 }
 
+void worn_doubt(struct worn *w, long realisation, const char *why)
+{
+	table_comment(w->particles, "doubtful", "realisation %ld: %s", realisation, why);
+	if (w->summary)
+		table_comment(
+			w->summary, "doubtful", "realisation %ld: %s", realisation, why);
+}
+
 void worn_close(struct worn *w)
 {
 	table_done(w->particles);

@@ -177,6 +177,16 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
+static const char *doubted; /* why the input is doubtful, NULL: it is not */
+
+/* Ends the output, which is as doubtful as the input. */
+static void finish(struct table_out *t)
+{
+	if (doubted)
+		table_comment(t, "doubtful", "%s", doubted);
+	table_done(t);
+}
+
 /* What a table states of its study; nan: nothing. */
 struct study {
 	double area;     /* nominal, m2 */
@@ -225,6 +235,7 @@ static void read_particles(
 				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
+	doubted = table_doubted(t) ? xstrdup(table_key(t, "doubtful")) : doubted;
 	study->area = table_quantity(t, "nominal_area", UNIT_AREA);
 	study->distance = table_quantity(t, "step_distance", UNIT_LENGTH);
 	*cmd = opt_cmd(table_upstream(t), NULL);
@@ -293,7 +304,7 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 		put_quantity(t, counts[k], "1", (struct estimate){ count[k], NAN, NAN });
 	for (int q = 0; q < ESTIMATES; q++)
 		put_quantity(t, names[q], units[q], out[q]);
-	table_done(t);
+	finish(t);
 }
 
 /* Reads the other study with the same options. */
@@ -386,7 +397,7 @@ static void print_comparison(
 	}
 	put_life(t, study, (double[]){ value[0][worn].value, value[1][worn].value },
 		(double[]){ log_error[0][worn], log_error[1][worn] }, n);
-	table_done(t);
+	finish(t);
 	ensemble_free(other);
 }
 
@@ -422,7 +433,7 @@ static void print_steps(const struct ensemble *e, const char *cmd)
 				w.shape.value, w.scale.value },
 			12);
 	}
-	table_done(t);
+	finish(t);
 }
 
 static void print_sizes(const struct ensemble *e, const char *cmd)
@@ -445,7 +456,7 @@ static void print_sizes(const struct ensemble *e, const char *cmd)
 				fit == WEIBULL_OK ? weibull_density(&w, middle) : NAN },
 			5);
 	}
-	table_done(t);
+	finish(t);
 }
 
 static void print_aspects(const struct ensemble *e, const char *cmd)
@@ -460,7 +471,7 @@ static void print_aspects(const struct ensemble *e, const char *cmd)
 				aspect_count[k],
 				aspects > 0 ? aspect_count[k] / aspects : NAN },
 			4);
-	table_done(t);
+	finish(t);
 }
 
 /* Dies if an option was given that the output does not depend on. */
@@ -531,5 +542,5 @@ int main(int argc, char **argv)
 	ensemble_free(e);
 	free(size_count);
 	free(cmd);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(doubted ? EXIT_NOCONV : EXIT_SUCCESS);
 }
