@@ -174,6 +174,15 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 	# NRRD doubles backslashes in its header
 	same "the recorded command reproduces an x3p, with or without a blank in its name" b.nrrd \
 		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' b.nrrd)" >again; echo again)"
+	# names with what unzip takes for a pattern, and blanks around the text of an element
+	cp bindata/data.bin 'bindata/data[1].bin'
+	sed -e 's/data.bin/data[1].bin/' -e 's/<SizeX>3/<SizeX> 3 /' main.xml >blanks.xml
+	mv blanks.xml main.xml
+	zip -q 'a b[1].x3p' main.xml 'bindata/data[1].bin'
+	surfunzip 'a b[1].x3p' >c.nrrd
+	is "x3p with brackets and blanks is read" "$(heights c.nrrd)" "$(heights b.nrrd)"
+	same "the recorded command reproduces it" c.nrrd \
+		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' c.nrrd)" >again; echo again)"
 	x3p I 1e-9 00000000000000000000000000000000
 	fails "x3p that is damaged" 1 'md5 differs' surfunzip "a b.x3p"
 	x3p D 1 ""
