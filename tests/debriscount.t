@@ -277,4 +277,9 @@ is "a period whose count has no upper limit gives no limit to a slope" "$(column
 	"nan nan inf inf finite "
 sed '/^25/,$d' veiled.tsv | debriscount --period 10s --duration 20s --alarm 1800:1000 >out 2>err
 is "an alarm is active at the end of a record whose last count is not known" $? 4
+# 0.3 s is not before three periods of 0.1 s, though it is before three times the number 0.1
+awk 'BEGIN { print "time1\tdiameter"; for (i = 0; i < 30; i++) printf "%.1f\t1e-4\n", i / 10 }' >border.tsv
+debriscount --period 100ms border.tsv >border.out
+is 'a particle at the end of a period is in the next one' "$(column rows border.out | sort -u)" 1
+is 'periods end at decimal numbers' "$(column end border.out | head -n 3 | tr '\n' ' ')" '0.1 0.2 0.3 '
 done_testing

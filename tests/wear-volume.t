@@ -106,4 +106,10 @@ printf 't\tdiameter\n1\tnan\n2\t60e-6\n' | wear-volume >out 2>err
 is 'a volume without particles of unknown size says so' "$? $(grep '^# doubtful' out)" '3 # doubtful: rows without a diameter'
 printf 't\tdiameter\tunit\n1\t60e-6\ta\n2\t60e-6\tb\n' >units.tsv
 fails 'particles of two units' 1 "line 3: unit 'b' after 'a': want rows of one unit" wear-volume units.tsv
+# 0.3 s is not before three periods of 0.1 s, though it is before three times the number 0.1
+awk 'BEGIN { print "time1\tdiameter"; for (i = 0; i < 30; i++) printf "%.1f\t1e-4\n", i / 10 }' >border.tsv
+wear-volume --period 100ms border.tsv >border.out
+is 'a particle at the end of a period is in the next one' "$(column y border.out | awk '
+	{ printf "%.3f\n", ($1 - last) / 5.235987756e-13; last = $1 }' | sort -u)" 1.000
+is 'periods end at decimal numbers' "$(column t border.out | head -n 3 | tr '\n' ' ')" '0.1 0.2 0.3 '
 done_testing

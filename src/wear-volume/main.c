@@ -81,15 +81,17 @@ static double volume_of(
 	return many * sphere * d * d * d;
 }
 
-static void put_until(struct table_out *out, double time, double volume, long long *rows)
+/* The periods that are complete at this time, from the one that ends at *end on. */
+static void put_until(
+	struct table_out *out, double time, double volume, long long *rows, double *end)
 {
 	long long before = *rows;
 
-	for (; time >= (double)(*rows + 1) * period; ++*rows) {
-		const double row[2] = { (double)(*rows + 1) * period * time_scale,
-			volume };
+	for (; time >= *end; *end = period_end((double)*rows + 1, period)) {
+		const double row[2] = { *end * time_scale, volume };
 
 		table_put_row(out, row, 2);
+		++*rows;
 	}
 	if (*rows > before)
 		table_flush(out);
@@ -99,7 +101,7 @@ static void put_until(struct table_out *out, double time, double volume, long lo
 static long sum_rows(struct table_in *t, struct table_out *out)
 {
 	struct columns c = find_columns(t);
-	double before = -INFINITY, volume = 0;
+	double before = -INFINITY, volume = 0, end = period_end(1, period);
 	long part = -1, without = 0;
 	long long rows = 0;
 
@@ -124,7 +126,7 @@ static long sum_rows(struct table_in *t, struct table_out *out)
 				table_name(t), table_line(t),
 				table_column_name(t, c.time), time, PERIODS_MOST);
 		before = time;
-		put_until(out, time, volume, &rows);
+		put_until(out, time, volume, &rows, &end);
 		volume += volume_of(t, &c, v, &without);
 	}
 	stats_set("rows", (double)rows);
