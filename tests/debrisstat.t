@@ -238,4 +238,12 @@ fails "a bootstrap of one realisation" 1 "two realisations" debrisstat --bootstr
 printf 'realisation\tstep\tvolume\tdiameter\taspect\n4000000000\t2000000\t1\t1\t1\n' >late.tsv
 fails 'a step beyond those of debrisgen' 1 'line 2: step is 2000000, want a whole number, 1 to 1e+06' \
 	debrisstat late.tsv
+# Diameters of whole micrometres: 70 um is not below seven classes of 10 um, though it is below
+# seven times the number 1e-5
+awk 'BEGIN { print "realisation\tstep\tvolume\tdiameter\taspect"
+	for (i = 1; i < 400; i++) printf "0\t1\t1e-15\t%de-6\t1\n", i }' >whole.tsv
+debrisstat -o sizes --bin 10um whole.tsv >whole.out
+is "a diameter at the limit of a class is in the upper one" "$(column count whole.out | sort -n | uniq -c | awk '{ printf "%d of %d, ", $1, $2 }')" \
+	'1 of 9, 39 of 10, '
+is "limits of classes are decimal numbers" "$(column high whole.out | sed -n '3p;6p;7p' | tr '\n' ' ')" '3e-05 6e-05 7e-05 '
 done_testing

@@ -455,6 +455,14 @@ size_t number_write(double value, char text[NUMBER_TEXT])
 	return (size_t)(end - text);
 }
 
+double decimal_multiple(double k, double step)
+{
+	char text[NUMBER_TEXT];
+
+	snprintf(text, sizeof text, "%.15g", k * step);
+	return strtod(text, NULL);
+}
+
 const char *number_text(double value, char text[NUMBER_TEXT])
 {
 	number_write(value, text);

@@ -45,6 +45,10 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 /* strtod, but not for hexadecimal numbers: of those it reads nothing. */
 double decimal_parse(const char *text, char **end);
 
+/* k steps, to 15 digits: limits of classes and periods that are compared with decimal
+ * numbers.  Three times 0.1 is 4e-17 more than 0.3, which would be below its limit. */
+double decimal_multiple(double k, double step);
+
 /* The decimal number of n characters times 10^ten: the double nearest to it, which the
  * product of two rounded numbers need not be. */
 double decimal_shift(const char *text, size_t n, int ten);

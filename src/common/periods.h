@@ -1,4 +1,4 @@
-/* periods.h - where periods end, and how many a gap between two particles may have
+/* periods.h - how long a gap between two particles a table of periods may have
  *
  * A gap costs a row for every period in it.  Ten million rows are about a gigabyte of
  * output, more than any reader of such a table needs: the period or the unit of time is
@@ -8,9 +8,5 @@
 #define COMMON_PERIODS_H
 
 enum { PERIODS_MOST = 10000000 };
-
-/* End of the first k periods, to 15 digits, since times are decimal numbers: three times
- * 0.1 is 4e-17 more than 0.3, and a particle at 0.3 s is in the fourth period. */
-double period_end(double k, double period);
 
 #endif

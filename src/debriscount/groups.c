@@ -1,7 +1,7 @@
 #include "groups.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
-#include "common/periods.h"
+#include "cli/unit.h"
 #include "num/room.h"
 #include <math.h>
 #include <stdlib.h>
@@ -125,7 +125,7 @@ void groups_report(struct groups *g, double begin, double end, int whole)
 double groups_next(const struct groups *g)
 {
 	double period = g->par.period, duration = g->par.duration;
-	double end = isnan(period) ? INFINITY : period_end(g->periods + 1, period);
+	double end = isnan(period) ? INFINITY : decimal_multiple(g->periods + 1, period);
 
 	/* a duration that was computed may differ by rounding */
 	return fabs(end - duration) < 1e-6 * period ? duration : end;

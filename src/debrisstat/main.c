@@ -3,6 +3,7 @@
 #include "cli/opt.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "cli/unit.h"
 #include "common/simulated.h"
 #include "io/input.h"
 #include "io/quantities.h"
@@ -113,6 +114,7 @@ static int counts(const struct particle_row *s)
 
 static void classify(const struct particle_row *s, double aspect)
 {
+	size_t size;
 	int k = 0;
 
 	if (!counts(s))
@@ -126,8 +128,12 @@ static void classify(const struct particle_row *s, double aspect)
 		return;
 	if (s->diameter / bin > 1e6)
 		die(EXIT_RUN, "--bin %g m: more than a million classes", bin);
-	if ((size_t)(s->diameter / bin) + 1 > classes)
-		classes = (size_t)(s->diameter / bin) + 1;
+	size = (size_t)(s->diameter / bin);
+	/* the quotient may be rounded beyond the limit of a class */
+	size += s->diameter >= decimal_multiple((double)size + 1, bin);
+	size -= s->diameter < decimal_multiple((double)size, bin);
+	if (size + 1 > classes)
+		classes = size + 1;
 	while (classes > class_room) {
 		size_t room = class_room ? 2 * class_room : 64;
 
@@ -136,7 +142,7 @@ static void classify(const struct particle_row *s, double aspect)
 			size_count[i] = 0;
 		class_room = room;
 	}
-	size_count[(size_t)(s->diameter / bin)]++;
+	size_count[size]++;
 }
 
 /* The summary of debrisgen for the particles, row by row. */
@@ -447,7 +453,8 @@ static void print_sizes(const struct ensemble *e, const char *cmd)
 	if (fit == WEIBULL_MEMORY)
 		no_memory();
 	for (size_t i = 0; i < classes; i++) {
-		double low = (double)i * bin, high = (double)(i + 1) * bin;
+		double low = decimal_multiple((double)i, bin),
+		       high = decimal_multiple((double)i + 1, bin);
 		double density = size_count[i] / (n * bin);
 		double middle = ((double)i + 0.5) * bin;
 

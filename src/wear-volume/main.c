@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "cli/unit.h"
 #include "common/non_ferrous.h"
 #include "common/periods.h"
 #include "common/verdicts.h"
@@ -87,7 +88,7 @@ static void put_until(
 {
 	long long before = *rows;
 
-	for (; time >= *end; *end = period_end((double)*rows + 1, period)) {
+	for (; time >= *end; *end = decimal_multiple((double)*rows + 1, period)) {
 		const double row[2] = { *end * time_scale, volume };
 
 		table_put_row(out, row, 2);
@@ -101,7 +102,7 @@ static void put_until(
 static long sum_rows(struct table_in *t, struct table_out *out)
 {
 	struct columns c = find_columns(t);
-	double before = -INFINITY, volume = 0, end = period_end(1, period);
+	double before = -INFINITY, volume = 0, end = decimal_multiple(1, period);
 	long part = -1, without = 0;
 	long long rows = 0;
 
