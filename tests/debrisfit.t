@@ -193,6 +193,18 @@ like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within thei
 
 fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
+# One of the contacts is a first iterate: surrogate, table and exit statuses say so.
+{
+	cat fitted.nrrd
+	roughgen --points 32 --length 0.25mm --sq 1um --corr 10um --crown auto --seed 77 |
+		bemcontact --pressure 50MPa --young 210GPa --max-iterations 2 2>said
+} >rough.nrrd
+debrisfit --yield 250MPa:500MPa --friction 0:0.5 rough.nrrd >doubtful.tsv 2>said
+is 'a fit with a contact that did not converge is doubtful' "$? $(sed -n 's/^# doubtful: //p' doubtful.tsv)" \
+	'3 a contact did not converge'
+debrisgen --yield 355MPa --friction 0.3 --surrogate doubtful.tsv --width 10 --audit 0 hidden.nrrd >out 2>said
+is 'particles of a doubtful surrogate have status 3' \
+	"$? $(grep -c 'doubtful.tsv: doubtful by its own account: a contact did not converge' said)" '3 1'
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v 'oblique' surrogate.tsv | grep -v '^#' >part.tsv
 fails 'a part of a surrogate' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd

@@ -30,8 +30,8 @@ static void put_scores(
 	}
 }
 
-void surrogate_write(
-	const struct surrogate *s, const struct surrogate_report *report, const char *cmd)
+void surrogate_write(const struct surrogate *s, const struct surrogate_report *report,
+	const char *cmd, const char *doubt)
 {
 	struct table_out *t = table_create(NULL, cmd, "1 1 1", "kind name value");
 
@@ -42,6 +42,8 @@ void surrogate_write(
 		"intervals of 90 %% hold %ld of %ld and are +-%.3g wide",
 		report->rms, report->most, report->within, report->checked,
 		report->width);
+	if (doubt)
+		table_comment(t, "doubtful", "%s", doubt);
 	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
 		put(t, "least", surrogate_property_names[k], s->least[k]);
 		put(t, "most", surrogate_property_names[k], s->most[k]);
@@ -85,13 +87,13 @@ static int check_scores(
 	return s->count;
 }
 
-void surrogate_read(const char *path, struct surrogate *s)
+int surrogate_read(const char *path, struct surrogate *s)
 {
 	struct table_in *t = table_open(path);
 	int kind = table_need(t, "kind"), name = table_need(t, "name"),
 	    value = table_need(t, "value");
 	long rows = 0, scores = 0;
-	int whole = 0;
+	int whole = 0, doubted;
 
 	memset(s, 0, sizeof *s);
 	while (table_next(t)) {
@@ -117,5 +119,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 	if (rows != 2L * SURROGATE_PROPERTIES + scores || !whole)
 		die(EXIT_RUN, "%s: %ld rows: not a complete surrogate of debrisfit",
 			table_name(t), rows);
+	doubted = table_doubted(t) != NULL;
 	table_close(t);
+	return doubted;
 }

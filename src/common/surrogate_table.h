@@ -8,10 +8,10 @@
 
 #include "debris/surrogate.h"
 
-/* Writes to standard output. */
+/* Writes to standard output; doubt: why it is doubtful, or NULL. */
 void surrogate_write(const struct surrogate *s, const struct surrogate_report *report,
-	const char *cmd);
-/* Dies where the file is not what it should be. */
-void surrogate_read(const char *path, struct surrogate *s);
+	const char *cmd, const char *doubt);
+/* Dies where the file is not what it should be.  1 if it is doubtful, with a warning. */
+int surrogate_read(const char *path, struct surrogate *s);
 
 #endif

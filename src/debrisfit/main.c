@@ -172,7 +172,8 @@ int main(int argc, char **argv)
 			fields_name(in), surfaces, count);
 	if (status == SURROGATE_MEMORY)
 		die(EXIT_RUN, "out of memory");
-	surrogate_write(&s, &report, cmd);
+	surrogate_write(&s, &report, cmd,
+		done == EXIT_SUCCESS ? NULL : "a contact did not converge");
 	note("of %ld surfaces held back the 90 %% interval holds the total volume of %ld; it "
 	     "is off by %.3g rms",
 		report.checked, report.within, report.rms);

@@ -35,6 +35,7 @@ struct quick {
 	size_t room;
 	struct quick_volumes volumes;
 	int audited; /* the present surface */
+	int doubted; /* the surrogate itself */
 	long outside, wide, audits, within, estimated;
 };
 
@@ -48,7 +49,7 @@ struct quick *quick_open(void)
 	struct quick *q = xcalloc(1, sizeof *q);
 	double highest;
 
-	surrogate_read(path, &q->surrogate);
+	q->doubted = surrogate_read(path, &q->surrogate);
 	highest = surrogate_highest_level(&q->surrogate);
 	if (level > highest + 1e-9)
 		die(EXIT_RUN,
@@ -207,7 +208,7 @@ int quick_report(const struct quick *q, const char *name)
 		     "on %ld of too wide an interval; %ld were estimated",
 			name, q->outside, path, q->wide, q->estimated);
 	if (at_most(q->within, q->audits, level) >= UNLIKELY)
-		return 1;
+		return !q->doubted;
 	warn("%s: %ld of %ld audited volumes lie within their intervals of level %g: %s is "
 	     "not of surfaces like these",
 		name, q->within, q->audits, level, path);
