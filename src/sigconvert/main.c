@@ -88,26 +88,24 @@ static void convert_table(const char *path, const struct recording_par *par)
 	text_close(in);
 }
 
-static int is_absurd(const struct magnitudes *m)
+/* Output of such samples has no end mark, so that what reads it does not take it for a
+ * record. */
+static void check_type(const struct magnitudes *m)
 {
-	if (from != FROM_RAW)
-		return 0;
-	if (magnitudes_single(m)) {
-		warn("the samples look like float32: --from raw wants little-endian "
-		     "float64");
-		return 1;
-	}
-	if (!magnitudes_absurd(m, 1e-100))
-		return 0;
-	warn("%.2g of the samples are above 1e100, and the largest is %.2g: not "
-	     "little-endian float64?",
-		m->huge / m->samples, m->most);
-	return 1;
+	if (magnitudes_single(m))
+		die(EXIT_RUN,
+			"the samples look like float32: --from raw wants little-endian "
+			"float64");
+	if (magnitudes_absurd(m, 1e-100))
+		die(EXIT_RUN,
+			"%.2g of the samples are above 1e100, and the largest is %.2g: "
+			"not little-endian float64?",
+			m->huge / m->samples, m->most);
 }
 
 int main(int argc, char **argv)
 {
-	int operand = opt_parse(&prog, argc, argv), absurd;
+	int operand = opt_parse(&prog, argc, argv);
 	struct magnitudes magnitudes = { 0 };
 	struct recording_par par = { .from = (enum recording_from)from,
 		.rate = rate.n ? rate.v[0] : NAN,
@@ -149,6 +147,8 @@ int main(int argc, char **argv)
 		frames += (double)n;
 	}
 	recording_close(in);
+	if (from == FROM_RAW)
+		check_type(&magnitudes);
 	if (table)
 		channels_done(table);
 	else
@@ -159,6 +159,5 @@ int main(int argc, char **argv)
 		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
-	absurd = is_absurd(&magnitudes);
-	return shell_done(clipped > 0 || absurd ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);
 }
