@@ -81,7 +81,7 @@ done | tr '\n' ' ')" "1 0 0 0 "
 # What people see: four digits, units, comments but no commands.
 records --pretty life.tsv >shown
 is "--pretty shows units in the header" "$(grep -c 't \[s\] *mean \[s\] *q05 \[s\].* p_no_failure$' shown)" 1
-is "--pretty shows four digits" "$(awk '/^[0-9]/ { print $3 }' shown)" \
+is "--pretty shows four digits" "$(awk '$1 ~ /^[0-9]/ { print $3 }' shown)" \
 	"$(awk -F '\t' '/^[0-9]/ { printf "%.4g", $3 }' life.tsv)"
 is "--pretty shows assumptions but not the command" "$(grep -c '^assumed: ' shown) $(grep -c cmd shown)" "1 0"
 is "--pretty aligns columns" "$(records --pretty summary.tsv | awk '!/:/ { print length }' | sort -u | wc -l)" 1
