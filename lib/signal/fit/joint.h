@@ -98,6 +98,7 @@ struct joint_pulse {
 	 * 2: its delay then, by how much the squares of both delays exceed those of this
 	 * fit, and the likelihood ratio of that fit and this one (0: not possible). */
 	double other_delta, more_square, exchange;
+	int partner; /* the other one, while pulses are looked for */
 };
 
 static inline double joint_delay_variance(const struct joint_pulse *p)

@@ -143,25 +143,15 @@ static double significance(const struct joint_scene *s, const struct joint_pulse
 				   : p->a * p->a * joint_energy(s);
 }
 
-/* Forgets, of the pulses that are left without pulse k of those before, exchanges with
- * it: it is the one that arrives at sensor 2 where they would. */
+/* Forgets, of the pulses that are left without the kth, exchanges with it. */
 static void forget_exchanges(struct joint *j, int k)
 {
-	const struct joint_pulse *before = j->before;
-
 	for (int i = 0; i < j->m; i++) {
-		const struct joint_pulse *was = &before[i + (i >= k)];
-		double at = was->t + was->other_delta, gone, other = INFINITY;
+		struct joint_pulse *p = &j->pulse[i];
 
-		if (!(was->exchange > 0))
-			continue;
-		gone = fabs(before[k].t + before[k].delta - at);
-		for (int x = 0; x < j->m_before; x++)
-			if (x != k && &before[x] != was)
-				other = fmin(
-					other, fabs(before[x].t + before[x].delta - at));
-		if (gone < other)
-			j->pulse[i].exchange = 0;
+		if (p->partner == k)
+			p->exchange = 0;
+		p->partner -= p->partner > k;
 	}
 }
 
@@ -225,8 +215,9 @@ static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
 /* Keeps the fit with exchanged arrivals p, q as another one of i, k if it is the most
  * likely one.  Where the delay of i is nearer to its own than to the exchanged one, under
  * either name, nothing has been exchanged. */
-static void keep_exchange(struct joint_pulse *i, const struct joint_pulse *k,
-	const struct joint_pulse *p, const struct joint_pulse *q, double ratio)
+static void keep_exchange(const struct joint *j, struct joint_pulse *i,
+	const struct joint_pulse *k, const struct joint_pulse *p,
+	const struct joint_pulse *q, double ratio)
 {
 	const struct joint_pulse *same = (i->t < k->t) == (p->t < q->t) ? p : q;
 	double apart = fabs(k->t + k->delta - i->t - i->delta);
@@ -234,6 +225,7 @@ static void keep_exchange(struct joint_pulse *i, const struct joint_pulse *k,
 	if (ratio <= i->exchange || fabs(same->delta - i->delta) < 0.5 * apart)
 		return;
 	i->exchange = ratio;
+	i->partner = (int)(k - j->pulse);
 	i->other_delta = same->delta;
 	i->more_square = p->delta * p->delta + q->delta * q->delta - i->delta * i->delta -
 			 k->delta * k->delta;
@@ -262,8 +254,8 @@ static void try_swap(struct joint *j, int i, int k)
 		j->result.chi2 = after;
 	else
 		restore(j);
-	keep_exchange(p, q, &other[0], &other[1], ratio);
-	keep_exchange(q, p, &other[1], &other[0], ratio);
+	keep_exchange(j, p, q, &other[0], &other[1], ratio);
+	keep_exchange(j, q, p, &other[1], &other[0], ratio);
 }
 
 void joint_swap_pulses(struct joint *j)
