@@ -4,14 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Matched filter of the residual on every stride-th sample, per channel. */
-static size_t filter_residual(struct joint *j, size_t stride)
+/* Matched filter of the residual, for the pulse of this delay, on every stride-th sample,
+ * per channel. */
+static size_t filter_residual(struct joint *j, double delta, size_t stride)
 {
 	const struct joint_scene *s = &j->scene;
 	size_t len, points = (j->n + stride - 1) / stride;
 
 	for (int c = 0; c < 2; c++) {
-		double T = joint_duration(s, 0, c);
+		double T = joint_duration(s, delta, c);
 		long first = shape_support(s->shape, 0, T, &len);
 
 		shape_sample(s->shape, 0, T, first, len, j->scratch, NULL, NULL);
@@ -35,25 +36,32 @@ static long largest(const double *x, double sign, long first, long last, long at
 	return at;
 }
 
-/* The pulse that would reduce chi-square most, except near the positions tried before. */
-static struct candidate search(struct joint *j, const struct candidate *tried, int ntried)
+/* What a search has found: the pulse that would reduce chi-square most, the root of that
+ * with the sign of the pulse, and the same of the best negative one. */
+struct found {
+	struct candidate best;
+	double z, least;
+};
+
+/* Looks for pulses of delays from lo to hi, except near the positions tried before. */
+static void search_between(struct joint *j, double lo, double hi,
+	const struct candidate *tried, int ntried, struct found *found)
 {
 	const struct joint_scene *s = &j->scene;
-	size_t stride = (size_t)shape_stride(s->duration);
-	size_t points;
-	double z = 0, least = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
-	long lo = (long)floor(s->delta_min / (double)stride);
-	long hi = (long)ceil(s->delta_max / (double)stride), from, to, top = -1, low = -1;
-	struct candidate best = { 0 };
+	const double middle = 0.5 * (lo + hi), g = s->gain;
+	const double norm = 1 / sqrt(joint_energy(s) * (1 + middle / s->transit));
+	const double T = joint_duration(s, middle, 0);
+	const size_t stride = (size_t)shape_stride(T);
+	const size_t points = filter_residual(j, middle, stride);
+	const long least = (long)floor(lo / (double)stride);
+	const long most = (long)ceil(hi / (double)stride);
+	long from, to, top = -1, low = -1;
 
-	joint_project(j);
-	points = filter_residual(j, stride);
-	j->result.searches++;
 	from = (long)ceil(fmax(arrival_limit(j, 0), 0) / (double)stride);
 	to = (long)fmin(arrival_limit(j, 1) / (double)stride, (double)points - 1);
 	for (long k = from; k <= to; k++) {
 		const double *f = j->filter[1];
-		long first = k + lo < 0 ? 0 : k + lo, last = k + hi;
+		long first = k + least < 0 ? 0 : k + least, last = k + most;
 		double up, down;
 
 		last = last < (long)points ? last : (long)points - 1;
@@ -64,33 +72,59 @@ static struct candidate search(struct joint *j, const struct candidate *tried, i
 		up = (j->filter[0][k] + g * f[top]) * norm;
 		down = (j->filter[0][k] + g * f[low]) * norm;
 		/* No delay is better than the best one so far. */
-		if (down >= least && up <= fabs(z) && (!s->signs || -down <= fabs(z)))
+		if (down >= found->least && up <= fabs(found->z) &&
+			(!s->signs || -down <= fabs(found->z)))
 			continue;
 		for (long l = first - k; l <= last - k; l++) {
 			double here = (j->filter[0][k] + g * f[k + l]) * norm;
 			int old = 0;
 
-			least = here < least ? here : least;
-			if ((s->signs ? fabs(here) : here) <= fabs(z))
+			found->least = fmin(found->least, here);
+			if ((s->signs ? fabs(here) : here) <= fabs(found->z))
 				continue;
 			for (int i = 0; i < ntried && !old; i++)
 				old = fabs((double)(k * (long)stride) - tried[i].t) <
-					      0.15 * s->duration &&
+					      0.15 * T &&
 				      fabs((double)(l * (long)stride) - tried[i].delta) <
-					      0.15 * s->duration;
+					      0.15 * T;
 			if (old)
 				continue;
-			z = here;
-			best.t = (double)(k * (long)stride);
-			best.delta = clamp(
-				(double)(l * (long)stride), s->delta_min, s->delta_max);
+			found->z = here;
+			found->best = (struct candidate){ .t = (double)(k * (long)stride),
+				.delta = clamp((double)(l * (long)stride), s->delta_min,
+					s->delta_max),
+				.a = here * norm,
+				.z2 = here * here };
 		}
 	}
-	best.z2 = z * z;
-	j->result.negative |=
-		!s->signs && -least > z && least * least > s->threshold_near;
-	best.a = z * norm;
-	return best;
+}
+
+/* Ratio of the longest and the shortest pulse for which one matched filter serves: that
+ * of a sine pulse in the middle then loses a twentieth of the chi-square of either. */
+static const double ONE_FILTER = 1.27;
+
+/* The pulse that would reduce chi-square most, except near the positions tried before. */
+static struct candidate search(struct joint *j, const struct candidate *tried, int ntried)
+{
+	const struct joint_scene *s = &j->scene;
+	const double shortest = 1 + s->delta_min / s->transit;
+	const double ratio = (1 + s->delta_max / s->transit) / shortest;
+	const int filters = (int)fmax(ceil(log(ratio) / log(ONE_FILTER)), 1);
+	double lo = s->delta_min;
+	struct found found = { .z = 0 };
+
+	joint_project(j);
+	j->result.searches++;
+	for (int i = 1; i <= filters; i++) {
+		double longest = shortest * pow(ratio, (double)i / filters), hi;
+
+		hi = i < filters ? (longest - 1) * s->transit : s->delta_max;
+		search_between(j, lo, hi, tried, ntried, &found);
+		lo = hi;
+	}
+	j->result.negative |= !s->signs && -found.least > found.z &&
+			      found.least * found.least > s->threshold_near;
+	return found.best;
 }
 
 /* 1 if there are more pulses, and no room for them. */
