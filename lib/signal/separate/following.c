@@ -25,11 +25,14 @@ void separate_widen(struct separate *s)
 	s->scene.delta_max = fmax(s->scene.delta_max, middle + half);
 }
 
-/* The range of the last delays, widened by half of it on either side, as in learning. */
+/* The range of the last delays, widened by half of it on either side, as in learning.
+ * That of laminar flow is no narrower than it was learned: its velocities are not normal,
+ * and a particle that is slower than the range is fitted by many. */
 static void follow_delay(struct separate *s, double delay)
 {
 	size_t n;
 	double lo = INFINITY, hi = -INFINITY;
+	double wide = calibration_reach(CALIBRATE_WIDE, s->cal.transit, s->cal.duration);
 
 	s->delay[s->delays++ % TRACKED] = delay;
 	n = s->delays < TRACKED ? s->delays : TRACKED;
@@ -38,6 +41,10 @@ static void follow_delay(struct separate *s, double delay)
 		hi = fmax(hi, s->delay[i]);
 	}
 	calibration_widen(s->cal.duration, &lo, &hi);
+	if (s->cal.delta_max - s->cal.delta_min > 2 * wide) {
+		lo = fmin(s->cal.delta_min, lo);
+		hi = fmax(s->cal.delta_max, hi);
+	}
 	if (n < ENOUGH) { /* the present range was learned from other pulses */
 		lo = fmin(s->scene.delta_min, lo);
 		hi = fmax(s->scene.delta_max, hi);
