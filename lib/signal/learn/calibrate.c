@@ -419,9 +419,11 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	broad = v.slow > LAMINAR * v.fast;
 	if (broad)
 		status = try_velocities(&look, &v, c);
-	if (status == SEPARATE_OK)
+	/* Pulses with echoes may seem to differ as much in plug flow. */
+	if (status == SEPARATE_OK &&
+		v.slow * (1 - CALIBRATE_WIDE) < v.fast * (1 + CALIBRATE_WIDE))
 		status = try_range(&look, 0, c);
-	else if (status != SEPARATE_MEMORY)
+	else if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
 		status = find(&look, c);
 	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
 		status = try_velocities(&look, &v, c);
