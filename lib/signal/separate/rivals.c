@@ -51,7 +51,8 @@ enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 
 	most = (int)ceil(MOST * (double)a->n / s->cal.duration);
 	most = described && a->m < most ? a->m : most;
-	if (a->cut && !described && a->m > 2 * most)
+	if (a->cut && !described && a->m > 2 * most &&
+		!(a->r.negative && s->counters.negative + s->cal.negative > 0))
 		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
 	if (room_for(&s->spikes, &s->spike_room, 2 * a->n, sizeof *s->spikes))
