@@ -32,6 +32,43 @@ static void add_noise(double *y, unsigned scene, unsigned channel)
 	}
 }
 
+/* In laminar flow, one particle is a third as fast and one three times as fast as those
+ * in the middle of the range: either is one pulse, and the errors are those stated. */
+static void test_laminar(struct joint *j, const struct joint_scene *tied)
+{
+	static double y[2][N];
+	const struct joint_pulse truth[2] = { { .t = 160.3, .delta = 188.7, .a = 12 },
+		{ .t = 560.7, .delta = -137.2, .a = 25 } };
+	struct joint_scene s = *tied;
+	int right = 0, covered = 0;
+
+	s.delta_min = -150;
+	s.delta_max = 220;
+	for (unsigned k = 0; k < SCENES; k++) {
+		struct joint_pulse found[20];
+		struct joint_result r;
+		int m = 0;
+
+		memset(y, 0, sizeof y);
+		for (unsigned i = 0; i < 2; i++) {
+			joint_add(&s, &truth[i], 1, y[0], y[1], N);
+			add_noise(y[i], 9000 + k, i);
+		}
+		joint_fit(j, &s, y[0], y[1], N, found, &m, &r);
+		if (m != 2)
+			continue;
+		right++;
+		for (int i = 0; i < 2; i++)
+			covered += pow(found[i].delta - truth[i].delta, 2) <
+				   joint_delay_variance(&found[i]);
+	}
+	ok(right == SCENES, "%d of %d times a slow and a fast particle are two pulses",
+		right, SCENES);
+	/* 68 % of 2 SCENES, and three times its standard error. */
+	near(covered / (2.0 * right), 0.683, 0.09,
+		"errors of their delays are within one standard error");
+}
+
 /* Three pulses, two of them a fifth of their duration apart, nearly without noise. */
 static void test_clean(struct joint *j, const struct joint_scene *s)
 {
@@ -555,6 +592,7 @@ int main(void)
 	test_pairs(j, &s, 0);
 	test_pairs(j, &s, 12);
 	test_exchange(j, &s);
+	test_laminar(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);
