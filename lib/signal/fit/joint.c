@@ -195,6 +195,20 @@ static int by_time(const void *x, const void *y)
 	return p->t < q->t ? -1 : p->t > q->t;
 }
 
+/* Forgets exchanges of pulses that have since moved to another place. */
+static void forget_moved(struct joint *j)
+{
+	const double same = SHAPE_FINEST * j->scene.duration;
+
+	for (int i = 0; i < j->m; i++) {
+		struct joint_pulse *p = &j->pulse[i];
+
+		if (fabs(p->t - p->kept_t) > same ||
+			fabs(p->delta - p->kept_delta) > same)
+			p->exchange = 0;
+	}
+}
+
 static void finish(struct joint *j, int full, struct joint_pulse *pulses,
 	struct joint_result *result)
 {
@@ -232,6 +246,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		joint_merge_pulses(j);
 		joint_prune(j);
 		joint_fit_all(j);
+		forget_moved(j);
 		full = are_more(j);
 	}
 	*m = j->m;

@@ -98,7 +98,8 @@ struct joint_pulse {
 	 * 2: its delay then, by how much the squares of both delays exceed those of this
 	 * fit, and the likelihood ratio of that fit and this one (0: not possible). */
 	double other_delta, more_square, exchange;
-	int partner; /* the other one, while pulses are looked for */
+	int partner;               /* the other one, while pulses are looked for ... */
+	double kept_t, kept_delta; /* ... and where this one was then */
 };
 
 static inline double joint_delay_variance(const struct joint_pulse *p)

@@ -226,6 +226,8 @@ static void keep_exchange(const struct joint *j, struct joint_pulse *i,
 		return;
 	i->exchange = ratio;
 	i->partner = (int)(k - j->pulse);
+	i->kept_t = i->t;
+	i->kept_delta = i->delta;
 	i->other_delta = same->delta;
 	i->more_square = p->delta * p->delta + q->delta * q->delta - i->delta * i->delta -
 			 k->delta * k->delta;
