@@ -48,8 +48,10 @@ wear() {
 	debrisgen --yield "$4" --friction "$5" --poisson "$6" --summary full.steps --stats full.stats hidden.nrrd >/dev/null 2>&1
 	debrisgen --yield "$4" --friction "$5" --poisson "$6" --surrogate surrogate.tsv --width 1000 --audit 0 \
 		--summary quick.steps --stats quick.stats hidden.nrrd >/dev/null 2>&1
-	paste full.steps quick.steps | awk -F '\t' -v a="$(column cpu_seconds full.stats)" -v b="$(column cpu_seconds quick.stats)" '
-		/^#/ { next }
+	for s in full quick; do
+		grep -v '^#' $s.steps >$s.rows
+	done
+	paste full.rows quick.rows | awk -F '\t' -v a="$(column cpu_seconds full.stats)" -v b="$(column cpu_seconds quick.stats)" '
 		!n { for (i = 1; i <= NF; i++) { if ($i == "volume") v[++m] = i; if ($i == "particles") p[++q] = i
 			if ($i == "volume_low") low = i; if ($i == "volume_high") high = i; if ($i == "exact") e = i } n = 1; next }
 		{ print $e, $p[1], $p[2], $v[1], $v[2], $low, $high, a, b; a = b = 0 }'
