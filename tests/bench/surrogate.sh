@@ -37,8 +37,11 @@ while IFS='|' read -r surface load model; do
 	done
 	points=${surface#-n } cells=$(column realisation full.tsv | awk -v n="${points%% *}" '{ s += n * n } END { print s }')
 	failed=$(column columns particles.full | awk '{ s += $1 } END { print s }')
-	paste full.tsv quick.tsv | awk -F '\t' -v scene="$surface $load $model" -v cells="$cells" -v failed="$failed" \
-		-v full="$(median full)" -v quick="$(median quick)" '/^#/ { next }
+	for s in full quick; do
+		grep -v '^#' $s.tsv >$s.rows
+	done
+	paste full.rows quick.rows | awk -F '\t' -v scene="$surface $load $model" -v cells="$cells" -v failed="$failed" \
+		-v full="$(median full)" -v quick="$(median quick)" '
 		!n { for (i = 1; i <= NF; i++) { if ($i == "volume") v[++m] = i; if ($i == "volume_low") low = i
 			if ($i == "volume_high") high = i; if ($i == "particles" && !p) p = i } n = 1; next }
 		{ k += $p; a += $v[1]; b += $v[2]; held += $low <= $v[1] && $v[1] <= $high; all++ }
