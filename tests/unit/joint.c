@@ -32,8 +32,8 @@ static void add_noise(double *y, unsigned scene, unsigned channel)
 	}
 }
 
-/* In laminar flow, one particle is a third as fast and one three times as fast as those
- * in the middle of the range: either is one pulse, and the errors are those stated. */
+/* In laminar flow, one particle is half as fast and one three times as fast as those of
+ * delta 0: either is one pulse, and the errors are those stated. */
 static void test_laminar(struct joint *j, const struct joint_scene *tied)
 {
 	static double y[2][N];

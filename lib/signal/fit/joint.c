@@ -100,7 +100,9 @@ static void search_between(struct joint *j, double lo, double hi,
 }
 
 /* Ratio of the longest and the shortest pulse for which one matched filter serves: that
- * of a sine pulse in the middle then loses a twentieth of the chi-square of either. */
+ * of a sine pulse in the middle then loses a twentieth of the chi-square of either.  In
+ * 69 records of laminar flow 1.27, 1.6, 1.86 and a single filter find 1157, 1069, 1052
+ * and 1101 of 1694 particles rightly. */
 static const double ONE_FILTER = 1.27;
 
 /* The pulse that would reduce chi-square most, except near the positions tried before. */
@@ -195,20 +197,6 @@ static int by_time(const void *x, const void *y)
 	return p->t < q->t ? -1 : p->t > q->t;
 }
 
-/* Forgets exchanges of pulses that have since moved to another place. */
-static void forget_moved(struct joint *j)
-{
-	const double same = SHAPE_FINEST * j->scene.duration;
-
-	for (int i = 0; i < j->m; i++) {
-		struct joint_pulse *p = &j->pulse[i];
-
-		if (fabs(p->t - p->kept_t) > same ||
-			fabs(p->delta - p->kept_delta) > same)
-			p->exchange = 0;
-	}
-}
-
 static void finish(struct joint *j, int full, struct joint_pulse *pulses,
 	struct joint_result *result)
 {
@@ -246,7 +234,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		joint_merge_pulses(j);
 		joint_prune(j);
 		joint_fit_all(j);
-		forget_moved(j);
+		joint_forget_moved(j);
 		full = are_more(j);
 	}
 	*m = j->m;

@@ -260,6 +260,19 @@ static void try_swap(struct joint *j, int i, int k)
 	keep_exchange(j, q, p, &other[1], &other[0], ratio);
 }
 
+void joint_forget_moved(struct joint *j)
+{
+	const double same = SHAPE_FINEST * j->scene.duration;
+
+	for (int i = 0; i < j->m; i++) {
+		struct joint_pulse *p = &j->pulse[i];
+
+		if (fabs(p->t - p->kept_t) > same ||
+			fabs(p->delta - p->kept_delta) > same)
+			p->exchange = 0;
+	}
+}
+
 void joint_swap_pulses(struct joint *j)
 {
 	for (int i = 0; i < j->m; i++)

@@ -177,6 +177,8 @@ int joint_try_pulse(struct joint *j, const struct candidate *c);
 int joint_split_pulses(struct joint *j);
 /* Exchanges arrivals of pulses at the second sensor if that reduces chi-square. */
 void joint_swap_pulses(struct joint *j);
+/* Forgets exchanges of pulses that have moved to another place since they were kept. */
+void joint_forget_moved(struct joint *j);
 /* Merges pulses so close that they may be one that was split in vain. */
 void joint_merge_pulses(struct joint *j);
 /* Removes insignificant pulses, the least significant first. */

@@ -51,6 +51,7 @@ enum separate_status separate_try_rivals(struct separate *s, struct account *a)
 
 	most = (int)ceil(MOST * (double)a->n / s->cal.duration);
 	most = described && a->m < most ? a->m : most;
+	/* Many positive pulses may stand for a few negative ones. */
 	if (a->cut && !described && a->m > 2 * most &&
 		!(a->r.negative && s->counters.negative + s->cal.negative > 0))
 		return SEPARATE_OK; /* too many pulses for the time */
