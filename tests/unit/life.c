@@ -3,7 +3,7 @@
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
 #include "life/prior/fleet.h"
-#include "life/trend/bank.h"
+#include "life/trend/bank_state.h"
 #include "life/trend/passage.h"
 #include "num/select.h"
 #include "tap.h"
@@ -420,26 +420,54 @@ static void test_disturbances(void)
 		"a repair in quiet data lengthens the life by what it sets back");
 }
 
-/* Even wear to 80 % of the threshold under noise of 5 %: an observation must not set
- * the variance of its own noise, or coordinates with a bend there gain weight with every
- * row. */
+/* Even wear to 80 % of the threshold: an observation must not set the variance of its own
+ * noise, or coordinates with a bend there gain weight with every row. */
 static void test_noise_favours_no_bend(void)
 {
+	static const double noise[] = { 0.05, 0.15, 0.4 };
 	struct bank_par par = { .threshold = 1, .direction = 1 };
 	struct draw *d = draw_new(3, 0, RNG_NOISE);
-	double sum = 0;
 
-	for (int series = 0; series < 8; series++) {
-		struct bank *b = bank_new(&par);
+	for (int i = 0; i < 3; i++) {
+		double sum = 0;
 
-		for (int k = 0; k < 800; k++)
-			bank_add(b, k, k / 1000.0 + 0.05 * draw_normal(d));
-		sum += bank_weight(b, BANK_SATURATING);
-		bank_free(b);
+		for (int series = 0; series < 8; series++) {
+			struct bank *b = bank_new(&par);
+
+			for (int k = 0; k < 800; k++)
+				bank_add(b, k, k / 1000.0 + noise[i] * draw_normal(d));
+			sum += bank_weight(b, BANK_SATURATING);
+			bank_free(b);
+		}
+		ok(sum / 8 < 0.2,
+			"noise of %g on even wear favours no bent coordinate: weight %.3f",
+			noise[i], sum / 8);
 	}
-	ok(sum / 8 < 0.2, "noise on even wear favours no bent coordinate: weight %.3f",
-		sum / 8);
 	draw_free(d);
+}
+
+/* The tangents to a coordinate are taken at a damage that is known by its h. */
+static void test_damage_of_coordinate(void)
+{
+	static const struct bank_point path[] = { { 0, 0 }, { 3, 0.2 }, { 4, 0.9 } };
+	static const struct bank_shape more[] = {
+		{ .family = BANK_OTHER, .path = path, .n = 3 },
+		{ .family = BANK_OTHER, .of_value = 1, .par = -2 },
+	};
+	struct bank_par par = {
+		.threshold = 1, .direction = 1, .more = more, .n_more = 2
+	};
+	struct bank *b = bank_new(&par);
+	double worst = 0;
+
+	for (int k = 0; k < 4; k++)
+		bank_add(b, k, 0.1 + 0.1 * k);
+	for (int i = 0; i < b->shapes; i++)
+		for (double damage = -1; damage <= 2; damage += 0.05)
+			worst = tap_max(worst,
+				fabs(damage_at(b, i, place_of(b, i, damage).h) - damage));
+	near(worst, 0, 1e-9, "the damage at its place in every coordinate is itself");
+	bank_free(b);
 }
 
 /* The noise of y = 1 - (t / T)^2, which falls to 0 at T. */
@@ -815,6 +843,7 @@ int main(void)
 	test_no_wear();
 	test_few_rows();
 	test_noise_favours_no_bend();
+	test_damage_of_coordinate();
 	test_bent_wear();
 	test_wander();
 	test_fleet();

@@ -35,6 +35,10 @@ static const double HALT = 3.5;
  * the wear: else readings without noise, or all equal, would be foretold with certainty:
  * see "Least noise" in doc/benchmarks.md. */
 static const double FINEST = 3e-4;
+/* Turn of a tangent up to which it follows to second order.  With .125 the CRPS is that
+ * of exact tangents to .1 % (60 paths of each kind of tests/long/lives.c and of 32
+ * others), and the time of a row less by a fifth. */
+static const double NEAR = 0.125;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
 /* The correlation of an innovation with those before is summed over the last rows, their
@@ -115,18 +119,32 @@ static double wander_of(
 	return kinds[tr->kind].wander * step / b->gap * squared_slope(*p);
 }
 
-/* An observation in a coordinate in which a trend will be at h: the slope is taken there,
- * so that the noise has no influence on its own variance, and the observation lies on
- * the tangent there.  Accurate to second order. */
-static struct place seen_from(double h, const struct place *p)
+/* An observation in a coordinate in which a trend will be at h with this variance, in
+ * units of the noise: on the tangent at the damage that the filter makes of both, in one
+ * step of the iterated Kalman filter (Bell, Cathey, IEEE Trans. Autom. Control 38 (1993)
+ * 294).  If the trend is well known, that is the predicted damage, so that the noise has
+ * no influence on its own variance.  p is at the observation, and near it the tangent
+ * follows to second order. */
+static struct place seen_from(const struct bank *b, int shape, double h, double variance,
+	double damage, const struct place *p)
 {
-	double off = (p->h - h) / p->slope, turn = fmin(1, fmax(-1, p->bend * off));
+	double off = (p->h - h) / p->slope, rest, turn, expected;
 	struct place q = *p;
 
-	off *= 1 + 0.5 * turn;
-	q.log_slope -= turn;
-	q.slope *= turn != 0 ? exp(-turn) : 1;
-	q.h = h + q.slope * off;
+	if (fabs(p->bend * off) < NEAR && damage > 0 && damage < 1) {
+		rest = off * squared_slope(q) / (variance + squared_slope(q));
+		turn = p->bend * rest;
+		q.log_slope -= turn;
+		q.slope *= turn != 0 ? exp(-turn) : 1;
+		q.h -= 0.5 * q.slope * turn * rest;
+		return q;
+	}
+	expected = damage_at(b, shape, h);
+	off = damage - expected;
+	q = place_of(b, shape, expected);
+	rest = off * squared_slope(q) / (variance + squared_slope(q));
+	q = place_of(b, shape, damage - rest);
+	q.h += q.slope * rest;
 	return q;
 }
 
@@ -156,8 +174,8 @@ static double news_of(const struct bank *b, struct trend *tr, const double cell[
 }
 
 /* Updates one trend by a row; returns the probability that it is frozen. */
-static double follow(const struct bank *b, struct trend *tr, const struct place *seen,
-	const double cell[2], double step, int equal)
+static double follow(const struct bank *b, struct trend *tr, double damage,
+	const struct place *seen, const double cell[2], double step, int equal)
 {
 	int n = 2 + b->par.n_loads;
 	double keep = b->keep[tr->kind], *x = state_of(b, tr), f, e, z, limit, news = 1;
@@ -166,7 +184,7 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
 	advance_state(n, x, b->at, advance_of(b, tr, step), keep);
 	for (int k = 0; k < b->par.n_loads; k++)
 		priors_of(b, tr)[k] *= keep;
-	p = seen_from(x[0], seen);
+	p = seen_from(b, tr->shape, x[0], x[n], damage, seen);
 	x[n] += wander_of(b, tr, &p, step);
 	f = x[n] + squared_slope(p);
 	e = p.h - x[0];
@@ -378,7 +396,7 @@ static void take(struct bank *b, const struct row *r)
 			cell[1] = place_of(b, shape, damage + half).h;
 		}
 		tr->score *= fade;
-		one = follow(b, tr, &place, cell, step, equal);
+		one = follow(b, tr, damage, &place, cell, step, equal);
 		if (tr->weight > 0 && one > 0) /* not NAN */
 			frozen += tr->weight * one;
 	}
@@ -497,11 +515,12 @@ static struct opinion opinion_of(const struct bank *b, double damage, double ste
 			place = place_of(b, shape = tr->shape, damage);
 		line_at(b, tr, b->at, line);
 		advance_state(2, line, b->at, advance_of(b, tr, step), 1);
-		seen = seen_from(line[LINE_H], &place);
+		seen = seen_from(
+			b, tr->shape, line[LINE_H], line[LINE_HH], damage, &place);
 		f = line[LINE_HH] + wander_of(b, tr, &seen, step) + squared_slope(seen);
 		z = (seen.h - line[LINE_H]) / sqrt(f);
 		sum.density += tr->weight * exp(log_density(b, tr, &seen, f, z));
-		if (z * z > limit * tr->sum / freedom_of(b, tr))
+		if (!(z * z <= limit * tr->sum / freedom_of(b, tr))) /* or NAN */
 			sum.surprised += tr->weight;
 	}
 	return sum;

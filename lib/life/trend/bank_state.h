@@ -118,6 +118,8 @@ const struct bank_shape *shape_of(const struct bank *b, int i);
 /* Below 0 and above 1 a shape continues as a straight line: it is unknown there, and a
  * flat shape would make outliers look exact. */
 struct place place_of(const struct bank *b, int shape, double damage);
+/* The damage at h. */
+double damage_at(const struct bank *b, int shape, double h);
 
 /* The probability that the rows held back are the beginning of a new regime or follow a
  * repair, see passage.h. */
