@@ -17,7 +17,7 @@
  * their families alone; the others were rounded.  The weights of the exponentials and of
  * saturation with power 1/2 were swept again later. */
 static const struct bank_shape table[] = {
-	{ .family = BANK_LINEAR, .log_prior = 3.8 },
+	{ .family = BANK_LINEAR, .log_prior = 3.5 },
 	{ .family = BANK_RATE, .par = 1, .log_prior = 0.6 },
 	{ .family = BANK_RATE, .par = 2, .log_prior = 1 },
 	{ .family = BANK_RATE, .par = 3, .log_prior = -4.1 },
