@@ -166,6 +166,15 @@ printf 'volume\n1e-15\n1e-15\n1e-15\n' >equal.tsv
 fails "equal realisations are doubtful" 3 'equal.tsv: 3 realisations of equal volume' \
 	rwl --new --wear equal.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--fragment-area 1e-8m2 --area 2346.3e-6m2
+# What debrisgen doubts of a realisation
+{ cat frag.tsv && echo '# doubtful: realisation 1: particles are cut off'; } >cut.tsv
+fails "a table of fragments that calls itself doubtful" 3 'cut.tsv: doubtful by its own account: realisation 1: particles' \
+	rwl --new --wear cut.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--fragment-area 1e-8m2 --area 2346.3e-6m2
+is "the lives say so too" "$(sed -n 's/^# doubtful: //p' out)" "realisation 1: particles are cut off"
+rwl --new --wear frag.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--fragment-area 1e-8m2 --area 2346.3e-6m2 >sound.tsv
+is "and are the same" "$(grep '^[0-9]' out)" "$(grep '^[0-9]' sound.tsv)"
 # Realisations 1, 2 and 5 of 0 to 7, of which no particle tells
 printf '# realisation: 0\nrealisation\tstep\tparticle\tvolume\n# realisation: 1\n1\t1\t1\t2e-15\n2\t1\t1\t3e-15\n5\t2\t1\t1e-15\n' >some.tsv
 printf '# realisation: 7\n# last_step: 4\n' | cat some.tsv - >ends.tsv

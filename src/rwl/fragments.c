@@ -123,8 +123,8 @@ static void check_options(
 }
 
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a separate class. */
-static void read_wear(
-	struct partition *p, const char *option, char **cmd, double *distance)
+static void read_wear(struct partition *p, const char *option, char **cmd, char **doubt,
+	double *distance)
 {
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
@@ -133,6 +133,7 @@ static void read_wear(
 	struct wear w = { .file = file };
 	struct simulated simulated = { 0 };
 	struct physics told;
+	const char *why;
 	long part;
 	enum partition_status status;
 
@@ -179,6 +180,9 @@ static void read_wear(
 	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
+	why = table_key(w.table, "doubtful");
+	if (why)
+		*doubt = xstrdup(why);
 	table_close(w.table);
 	free(file);
 }
@@ -203,8 +207,8 @@ static int is_doubtful(const struct partition *p, int class, const char *file)
 	return n < 2 || !(error > ROUNDING);
 }
 
-struct partition *fragments_read(
-	const struct opt_texts *files, long first_step, char **made_by, double *distance)
+struct partition *fragments_read(const struct opt_texts *files, long first_step,
+	char **made_by, char **doubts, double *distance)
 {
 	struct partition *p =
 		partition_new(pump.pair.area, first_step, !isnan(pump.critical_size));
@@ -213,11 +217,12 @@ struct partition *fragments_read(
 		die(EXIT_RUN, "out of memory");
 	*distance = NAN;
 	for (int i = 0; i < files->n; i++)
-		read_wear(p, files->v[i], &made_by[i], distance);
+		read_wear(p, files->v[i], &made_by[i], &doubts[i], distance);
 	return p;
 }
 
-int fragments_close(struct partition *p, const struct opt_texts *files)
+int fragments_close(
+	struct partition *p, const struct opt_texts *files, char *const *doubts)
 {
 	int doubtful = 0;
 
@@ -243,7 +248,11 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_MEMORY:
 		die(EXIT_RUN, "out of memory");
 	}
-	for (int i = 0; i < files->n; i++)
+	for (int i = 0; i < files->n; i++) {
+		if (doubts[i])
+			warn("%.*s: doubtful by its own account: %s",
+				(int)strcspn(files->v[i], ":"), files->v[i], doubts[i]);
 		doubtful |= is_doubtful(p, i, files->v[i]);
+	}
 	return doubtful;
 }

@@ -9,11 +9,13 @@
  * Nominal pressure, area and sliding distance of a step are read from the tables if these
  * state them, and must not contradict the options; distance is NAN if they do not. Steps
  * before first_step are running-in.  made_by[k] becomes the pipeline that made file k,
- * fresh memory, or stays as it is.  Dies with one line naming the file. */
-struct partition *fragments_read(
-	const struct opt_texts *files, long first_step, char **made_by, double *distance);
-/* After the last of them, once the area of a fragment is known.  1, with a warning, where
- * the uncertainty of the wear is unknown. */
-int fragments_close(struct partition *p, const struct opt_texts *files);
+ * and doubts[k] why the file calls itself doubtful, fresh memory, or they stay as they
+ * are. Dies with one line naming the file. */
+struct partition *fragments_read(const struct opt_texts *files, long first_step,
+	char **made_by, char **doubts, double *distance);
+/* After the last of them, once the area of a fragment is known.  Tells the doubts; 1,
+ * with a warning, where the uncertainty of the wear is unknown. */
+int fragments_close(
+	struct partition *p, const struct opt_texts *files, char *const *doubts);
 
 #endif

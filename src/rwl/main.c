@@ -265,10 +265,11 @@ static struct lifetable *open_table(const struct observations *s, const char *cm
 }
 
 /* The fragments of --wear, and the step time that their sliding distance makes. */
-static struct partition *read_fragments(char **made_by)
+static struct partition *read_fragments(char **made_by, char **doubts)
 {
 	double distance;
-	struct partition *p = fragments_read(&wear_files, first_step, made_by, &distance);
+	struct partition *p =
+		fragments_read(&wear_files, first_step, made_by, doubts, &distance);
 
 	if (isnan(speed))
 		return p;
@@ -333,18 +334,26 @@ static int check_state(
 	return status;
 }
 
-/* Says so if the state is doubtful; its status. */
-static int pass_doubt(struct lifetable *out)
+/* Says so if the state or the fragments are doubtful by their own account; the status. */
+static int pass_doubt(struct lifetable *out, char *const *doubts)
 {
-	if (!state_doubt())
-		return 0;
-	table_comment(lifetable_out(out), "doubtful", "%s", state_doubt());
-	return EXIT_NOCONV;
+	int status = 0;
+
+	for (int k = -1; k < wear_files.n; k++) {
+		const char *why = k < 0 ? state_doubt() : doubts[k];
+
+		if (!why)
+			continue;
+		table_comment(lifetable_out(out), "doubtful", "%s", why);
+		status = EXIT_NOCONV;
+	}
+	return status;
 }
 
 int main(int argc, char **argv)
 {
-	char *made_by[OPT_TEXTS_MAX] = { NULL }, *cmd, *assumed;
+	char *made_by[OPT_TEXTS_MAX] = { NULL }, *doubts[OPT_TEXTS_MAX] = { NULL }, *cmd,
+	     *assumed;
 	struct partition *p = NULL;
 	struct paths *e;
 	struct lifetable *out;
@@ -361,13 +370,13 @@ int main(int argc, char **argv)
 		state_file = argv[i];
 	settle();
 	if (wear_files.n)
-		p = read_fragments(made_by);
+		p = read_fragments(made_by, doubts);
 	if (!new)
 		state_open(&s, state_file, &pump.pair);
 	if (!new)
 		covariates_open(s.table);
 	assumed = pump_assumed(p != NULL, s.quantity == PAIR_LEAKAGE);
-	if (p && fragments_close(p, &wear_files))
+	if (p && fragments_close(p, &wear_files, doubts))
 		status = EXIT_NOCONV;
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
@@ -390,7 +399,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
-	status |= check_state(&s, f, out) | pass_doubt(out);
+	status |= check_state(&s, f, out) | pass_doubt(out, doubts);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)
@@ -403,8 +412,10 @@ int main(int argc, char **argv)
 	paths_free(e);
 	if (s.table)
 		table_close(s.table);
-	for (int k = 0; k < wear_files.n; k++)
+	for (int k = 0; k < wear_files.n; k++) {
 		free(made_by[k]);
+		free(doubts[k]);
+	}
 	free(cmd);
 	free(assumed);
 	return shell_done(status);
