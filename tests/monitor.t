@@ -100,6 +100,18 @@ aopf --threshold 1 --direction up --lives-only --resume killed one.tsv >after
 { grep '^[0-9]' before; grep '^[0-9]' after; } >both
 same "killing the program between two rows does not change the output" both whole
 
+# A state of which the end is lost, and one that is damaged in the middle: the units before go on.
+awk 'BEGIN { print "unit\tt\ty"; for (t = 0; t < 9; t++) for (u = 0; u < 3; u++) print u "\t" t "\t" t / 20 }' >trio.tsv
+monitor='aopf --threshold 1 --direction up --unit unit --lives-only'
+$monitor --save trio trio.tsv >/dev/null
+size=$(wc -c <trio)
+head -c $((size / 2)) trio >lost
+fails "a state that is cut short" 3 'lost: the state is damaged from unit 2 on' $monitor --resume lost trio.tsv
+is "the units before go on" "$(grep '^[0-9]' out | cut -f 1 | sort -u | tr '\n' ' ')" "1 2 "
+{ head -c $((size / 3)) trio && head -c $((size / 3)) /dev/zero && tail -c $((size - size / 3 * 2)) trio; } >holed
+fails "a state that is damaged in the middle" 3 'holed: the state is damaged from unit 2 on' $monitor --resume holed trio.tsv
+ok "the whole state has no such warning" $monitor --resume trio trio.tsv
+
 # The memory of a unit: of a stream of 400 and of 4000 units, five rows each.
 stream() {
 	awk -v n="$1" 'BEGIN { print "unit\tt\ty"; for (t = 0; t < 5; t++)

@@ -34,6 +34,7 @@ struct units {
 	FILE *file;             /* NULL: nothing is kept */
 	const char *path;
 	size_t size; /* of the state of a unit */
+	int damaged; /* 1: not all of the state to resume from was complete */
 	unsigned char *place;
 };
 
@@ -116,7 +117,7 @@ int units_alarm(const struct units *units)
 
 int units_report(const struct units *units)
 {
-	int resumed = 0, doubtful = 0;
+	int resumed = 0, doubtful = units->damaged;
 
 	for (int i = 0; i < units->n; i++) {
 		const struct machine *u = units->unit[i];
@@ -319,6 +320,12 @@ void units_resume(struct units *units, const char *path, const char *options)
 	make_room(units, (size_t)h.size);
 	while (resume_unit(units, f, units->n))
 		;
+	units->damaged =
+		fseeko(f, 0, SEEK_END) == 0 && ftello(f) > offset_of(units, units->n, 0);
+	if (units->damaged)
+		warn("%s: the state is damaged from unit %d on: units after the first %d "
+		     "begin anew",
+			path, units->n + 1, units->n);
 	fclose(f);
 	stats_set("units_resumed", units->n);
 }
