@@ -128,10 +128,12 @@ static double wander_of(
 static struct place seen_from(const struct bank *b, int shape, double h, double variance,
 	double damage, const struct place *p)
 {
-	double off = (p->h - h) / p->slope, rest, turn, expected;
+	double off = (p->h - h) / p->slope, rest, expected;
 	struct place q = *p;
 
 	if (fabs(p->bend * off) < NEAR && damage > 0 && damage < 1) {
+		double turn;
+
 		rest = off * squared_slope(q) / (variance + squared_slope(q));
 		turn = p->bend * rest;
 		q.log_slope -= turn;
