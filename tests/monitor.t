@@ -108,7 +108,8 @@ size=$(wc -c <trio)
 head -c $((size / 2)) trio >lost
 fails "a state that is cut short" 3 'lost: the state is damaged from unit 2 on' $monitor --resume lost trio.tsv
 is "the units before go on" "$(grep '^[0-9]' out | cut -f 1 | sort -u | tr '\n' ' ')" "1 2 "
-{ head -c $((size / 3)) trio && head -c $((size / 3)) /dev/zero && tail -c $((size - size / 3 * 2)) trio; } >holed
+third=$((size / 3))
+{ head -c $third trio && head -c $third /dev/zero && tail -c $((size - third - third)) trio; } >holed
 fails "a state that is damaged in the middle" 3 'holed: the state is damaged from unit 2 on' $monitor --resume holed trio.tsv
 ok "the whole state has no such warning" $monitor --resume trio trio.tsv
 
