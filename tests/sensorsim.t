@@ -229,6 +229,18 @@ fails "the exponent of a profile that has none" 2 '\--exponent requires --profil
 fails "a mains frequency without mains" 2 '\--mains-frequency requires --mains' sensorsim --mains-frequency 60Hz one.tsv
 fails "events without an end" 2 'require --duration' sensorsim --bubbles 1 one.tsv
 
+# doubts about the particles
+for late in 0.02 5; do
+	printf 'time\tdiameter\n0.01\t1e-4\n%s\t1e-4\n# doubtful: cut off\n' $late |
+		sensorsim --duration 1s --truth doubted.tsv >doubted.au 2>err
+	is "particles of a doubtful table are marked, also if the last one is at $late s of a record of 1 s" \
+		"$? $(grep -c 'doubtful by its own account: cut off' err) $(grep '^# doubtful' doubted.tsv)" \
+		"3 1 # doubtful: cut off"
+done
+printf '# doubtful: cut off\ndiameter\n1e-4\n' | sensorsim --duration 1s --truth - >doubted.tsv 2>err
+is "so are those of a doubtful table without times" "$? $(grep '^# doubtful' doubted.tsv)" "3 # doubtful: cut off"
+ok "a record of doubtful particles is complete" records --check doubted.au
+
 # what it refuses
 fails "no table" 1 'none.tsv' sensorsim none.tsv
 printf 'time\tsize\n0\t1\n' >bad.tsv
