@@ -241,6 +241,13 @@ printf 'nan nan\n' >gone.txt
 fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
 printf '0,1\n1,2\n5,3\n' >uneven.csv
 fails "places at unequal steps" 1 'equally spaced' surfimport --profile --height-unit 1um uneven.csv
+# Bytes that are neither text nor zeros: a row or a column that the header does not count.
+for f in b.sdf s.sur; do
+	{ cat $f && printf '\0\001\002\0'; } >more
+	fails "more samples than the header of $f counts" 1 'more: more than the .* samples of its header' surfimport more
+	{ cat $f && printf '\r\n*\r\nOperator = Tom\r\n' && zeros 9; } >more
+	ok "text and zeros may follow the samples of $f" surfimport more
+done
 head -c 100 s.sur >cut.sur
 fails "a header that is cut off" 1 'want 512 bytes of a .sur header' surfimport cut.sur
 head -c 530 s.sur >cut.sur
@@ -299,8 +306,11 @@ fails "positions above the heights alone" 1 'first row is equally spaced' \
 tail -n 4 beside.txt >few.txt
 ok "few equally spaced heights are no positions" surfimport --pixel 1um --height-unit 1um few.txt
 sort -r -n places.txt >back.txt
-surfimport --profile --height-unit 1um places.txt >b.nrrd
-surfimport --profile --height-unit 1um back.txt >c.nrrd
+surfimport --profile --pixel 2mm --height-unit 1um places.txt >b.nrrd
+surfimport --profile --pixel 2mm --height-unit 1um back.txt >c.nrrd
+is "a spacing is given for positions without a unit" "$(list nx b.nrrd) $(list dx b.nrrd)" "9 0.002"
+fails "positions without a unit" 1 'does not state the spacing: specify --pixel' \
+	surfimport --profile --height-unit 1um places.txt
 is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
 fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
 done_testing
