@@ -172,6 +172,16 @@ for pair in '0.02GN 0.5 0.01' '0.007GN 0.7 0.0049' '0.013GN 0.3 0.0039' '0.011GN
 done
 fails "a thousandth of a billionth more than friction bears" 1 'friction bears' $slip --tangential 0.010000000000011GN ball.f64
 fails "more than friction bears" 1 'friction bears 1e+07 N' $slip --tangential 0.02GN ball.f64
+# Plane strain: the compliances are equal; antiplane shear: 1 / (1 - nu).
+perl -e 'print pack "d<*", map { 1e-6 * cos($_ * 0.0245436926) } 0..255' >slide.f64
+for g in 256x1 1x256; do
+	bemcontact --raw $g --pixel 1um -E 210GPa --boundary periodic --pressure 100MPa -u 0.3 --tangential 7.68mN slide.f64 >slip.nrrd
+	key tangential_displacement slip.nrrd
+done >moved
+near "ridges along the tangential load move farther than those across it" \
+	"$(awk '{ d[NR] = $1 } END { printf "%.9f", d[2] / d[1] }' moved)" 1.4285714 1e-6
+near "ridges that slide across have moved mu times the indentation" \
+	"$(awk -v d="$(key indentation slip.nrrd)" 'NR == 1 { print $1 / (0.3 * d) }' moved)" 1 1e-9
 fails "shear without a tangential load" 2 'requires --tangential' \
 	bemcontact --pressure 1Pa --estar 1GPa --fields shear
 fails "a tangential load without friction" 2 'need one another' \
