@@ -284,8 +284,12 @@ static void wear_record(struct run *run, struct record *r)
 	}
 	if (k > 1)
 		worn_end(run->out, r->realisation, c.done + k - 1);
-	if (run->doubt)
-		worn_doubt(run->out, r->realisation, run->doubt);
+	if (run->doubt) {
+		char *why = xprintf("realisation %ld: %s", r->realisation, run->doubt);
+
+		worn_doubt(run->out, why);
+		free(why);
+	}
 }
 
 static void warn_of_edge(struct run *run)
@@ -336,8 +340,10 @@ int main(int argc, char **argv)
 	progress_clear();
 	warn_of_edge(&run);
 	warn_of_border(&run);
-	if (!wearing_warn(run.wearing))
-		run.status = EXIT_NOCONV;
+	if (!wearing_warn(run.wearing)) {
+		doubt(&run, "the surrogate is of other surfaces, or doubtful itself");
+		worn_doubt(run.out, run.doubt);
+	}
 	worn_close(run.out);
 	free(run.worn.of);
 	wearing_close(run.wearing);

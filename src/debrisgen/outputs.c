@@ -422,12 +422,11 @@ void worn_end(struct worn *w, long realisation, long step)
 	table_comment(w->particles, "last_step", "%ld", step);
 }
 
-void worn_doubt(struct worn *w, long realisation, const char *why)
+void worn_doubt(struct worn *w, const char *why)
 {
-	table_comment(w->particles, "doubtful", "realisation %ld: %s", realisation, why);
+	table_comment(w->particles, "doubtful", "%s", why);
 	if (w->summary)
-		table_comment(
-			w->summary, "doubtful", "realisation %ld: %s", realisation, why);
+		table_comment(w->summary, "doubtful", "%s", why);
 }
 
 void worn_close(struct worn *w)
