@@ -85,7 +85,12 @@ fails "layers of raw heights" 2 "raw 32x24x2: want NXxNY$" bemcontact --raw 32x2
 fails "a tolerance that is none" 2 'tolerance 0.5: want .* to 0.1' bemcontact --estar 1GPa --pressure 1Pa --tolerance 0.5
 fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
-fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
+roughgen -n 16 >new.nrrd
+fails "no material" 2 'record 1 states no contact modulus: specify either --estar or --young' bemcontact --pressure 1kPa new.nrrd
+bemcontact --pressure 10MPa --estar 100GPa --boundary periodic --hardness 1GPa new.nrrd >solved.nrrd
+bemcontact --pressure 10MPa solved.nrrd >again.nrrd
+is "a record keeps modulus, boundary and hardness of its last contact" "$? $(for k in estar boundary hardness; do key $k again.nrrd; done | tr '\n' ' ')" \
+	"0 $(for k in estar boundary hardness; do key $k solved.nrrd; done | tr '\n' ' ')"
 fails "both materials" 2 'either --estar or --young' bemcontact --pressure 1Pa --estar 1GPa -E 2GPa
 fails "multi-level sums over a period" 2 'requires --boundary free' \
 	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms --boundary periodic
