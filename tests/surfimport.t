@@ -185,8 +185,16 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' c.nrrd)" >again; echo again)"
 	x3p I 1e-9 00000000000000000000000000000000
 	fails "x3p that is damaged" 1 'md5 differs' surfunzip "a b.x3p"
+	printf '\000\000\200\077\000\000\000\100\000\000\100\100\000\000\200\100\000\000\240\100\000\000\300\100' >bindata/data.bin
+	for scale in 1 1e-6 ''; do
+		x3p F "$scale" ''
+		surfunzip "a b.x3p" 2>err >c.nrrd
+		echo "$(heights c.nrrd) $(grep -c 'an increment of 1e-6, which is not applied' err)"
+	done >floats
+	is "floats of an x3p are metres, and a warning says that an increment is not applied" "$(tr '\n' ';' <floats)" \
+		"1 2 3 4 5 6 0;1 2 3 4 5 6 1;1 2 3 4 5 6 0;"
 	x3p D 1 ""
-	fails "x3p with too few samples" 1 'want 48 bytes, got 12' surfunzip "a b.x3p"
+	fails "x3p with too few samples" 1 'want 48 bytes, got 24' surfunzip "a b.x3p"
 	printf '\0\0\200\077\044\044\164\111' >LAYER_0.raw # 1, 1000002.25
 	printf '\0\0\200\077\020\044\164\111' >LAYER_0.raw # 1, 1000001
 	printf '<xml><GENERAL><IMAGE_SIZE_X>2</IMAGE_SIZE_X><IMAGE_SIZE_Y>1</IMAGE_SIZE_Y><FOV_X>0.5</FOV_X><FOV_Y>0.5</FOV_Y></GENERAL></xml>' >index.xml
