@@ -158,6 +158,12 @@ rwl --threshold-volume 1e-10m3 --wear frag.tsv --fragment-area 1e-8m2 --calibrat
 	--stats s doubt.tsv >out 2>err
 is "doubtful rows of the unit for calibration are reported apart" \
 	"$(sed -n 's/^rwl: \(.*\) rows are doubtful.*/\1/p' err | tr '\n' ' ')$(column rows_doubtful s)" "2 1 3"
+for mark in '# doubtful: realisation 3: cut off' '# note: sound'; do
+	{ cat even.tsv && echo "$mark"; } >marked.tsv
+	rwl --wear marked.tsv --step-time 1h --threshold-gap 15um gap.tsv >out 2>err
+	echo "$? $(grep -c 'marked.tsv: doubtful by its own account' err) $(grep -c '^# doubtful: a table of the fragments' out)"
+done >marks
+is "a life from fragments that call themselves doubtful is marked" "$(tr '\n' ';' <marks)" "3 1 1;0 0 0;"
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
@@ -239,7 +245,8 @@ near "the sliding speed determines the step time" "$(cell speed.out 1 q50)" \
 fails "a state for a new pair" 2 'new reads no state, not even steps.tsv' rwl $new --wear steps.tsv --step-time 1h steps.tsv
 fails "two states" 2 'state even.tsv: the state is also the operand steps.tsv' \
 	rwl --wear steps.tsv --state even.tsv steps.tsv
-cat particles.tsv particles.tsv >doubled.tsv
+grep -v "^#" particles.tsv >once.tsv
+cat once.tsv once.tsv >doubled.tsv
 fails "two ensembles of the same numbers" 1 'the numbers of joined ensembles must differ' \
 	rwl $new --wear doubled.tsv --step-time 1h
 rwl $new --threshold-volume 0.2 --area 2346 --wear even.tsv --step-time 1h 2>&1 >out | sed 's/^rwl: //' >err

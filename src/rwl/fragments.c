@@ -122,6 +122,8 @@ static void check_options(
 			told->distance, *distance);
 }
 
+static const char *why; /* the fragments are doubtful */
+
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a separate class. */
 static void read_wear(
 	struct partition *p, const char *option, char **cmd, double *distance)
@@ -177,6 +179,8 @@ static void read_wear(
 		partition_simulated(p, w.class, simulated.lowest, simulated.last_step);
 		partition_simulated(p, w.class, simulated.highest, simulated.last_step);
 	}
+	if (table_doubted(w.table))
+		why = "a table of the fragments says so of itself";
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
 	table_close(w.table);
@@ -246,4 +250,9 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	for (int i = 0; i < files->n; i++)
 		doubtful |= is_doubtful(p, i, files->v[i]);
 	return doubtful;
+}
+
+const char *fragments_doubt(void)
+{
+	return why;
 }

@@ -15,5 +15,7 @@ struct partition *fragments_read(
 /* After the last of them, once the area of a fragment is known.  1, with a warning, where
  * the uncertainty of the wear is unknown. */
 int fragments_close(struct partition *p, const struct opt_texts *files);
+/* Why the fragments are doubtful, by a table's own account; NULL: they are not. */
+const char *fragments_doubt(void);
 
 #endif

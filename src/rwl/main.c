@@ -333,13 +333,19 @@ static int check_state(
 	return status;
 }
 
-/* Says so if the state is doubtful; its status. */
+/* Says so if an input is doubtful; its status. */
 static int pass_doubt(struct lifetable *out)
 {
-	if (!state_doubt())
-		return 0;
-	table_comment(lifetable_out(out), "doubtful", "%s", state_doubt());
-	return EXIT_NOCONV;
+	const char *const why[] = { state_doubt(), fragments_doubt() };
+	int status = 0;
+
+	for (int k = 0; k < 2; k++) {
+		if (!why[k])
+			continue;
+		table_comment(lifetable_out(out), "doubtful", "%s", why[k]);
+		status = EXIT_NOCONV;
+	}
+	return status;
 }
 
 int main(int argc, char **argv)
