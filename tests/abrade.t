@@ -198,6 +198,11 @@ same "it is kept" h.nrrd kept.nrrd
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 { cat four.tsv && echo '# doubtful: pulses differ'; } >self.tsv
 fails "a table that calls itself doubtful" 3 'self.tsv: doubtful by its own account: pulses differ' abrade --gap 9um $p self.tsv
+# Particles of a surrogate, and those without end on a periodic grid, have no aspect.
+printf 'diameter\taspect\n10e-6\t3\n10e-6\tnan\n' >endless.tsv
+abrade --gap 9um $p endless.tsv >rows.tsv 2>err
+is "a particle whose aspect is unknown is a sphere, which a warning says" \
+	"$? $(column mode rows.tsv | tr '\n' ' ')$(grep -c 'particles without aspect are spheres' err)" "0 grooves rolls 1"
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv
 fails "an aspect below one" 1 'line 2: aspect is 0.5, want 1 or more' abrade --gap 1um $p flat.tsv
 fails "a diameter of 10 metres" 1 'line 2: diameter is 10 m, want metres' sh -c "printf 'diameter\n10\n' | abrade --gap 1um $p"

@@ -85,7 +85,12 @@ fails "layers of raw heights" 2 "raw 32x24x2: want NXxNY$" bemcontact --raw 32x2
 fails "a tolerance that is none" 2 'tolerance 0.5: want .* to 0.1' bemcontact --estar 1GPa --pressure 1Pa --tolerance 0.5
 fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
-fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
+roughgen -n 16 >new.nrrd
+fails "no material" 2 'record 1 states no contact modulus: specify either --estar or --young' bemcontact --pressure 1kPa new.nrrd
+bemcontact --pressure 10MPa --estar 100GPa --boundary periodic --hardness 1GPa new.nrrd >solved.nrrd
+bemcontact --pressure 10MPa solved.nrrd >again.nrrd
+is "a record keeps modulus, boundary and hardness of its last contact" "$? $(for k in estar boundary hardness; do key $k again.nrrd; done | tr '\n' ' ')" \
+	"0 $(for k in estar boundary hardness; do key $k solved.nrrd; done | tr '\n' ' ')"
 fails "both materials" 2 'either --estar or --young' bemcontact --pressure 1Pa --estar 1GPa -E 2GPa
 fails "multi-level sums over a period" 2 'requires --boundary free' \
 	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms --boundary periodic
@@ -172,6 +177,16 @@ for pair in '0.02GN 0.5 0.01' '0.007GN 0.7 0.0049' '0.013GN 0.3 0.0039' '0.011GN
 done
 fails "a thousandth of a billionth more than friction bears" 1 'friction bears' $slip --tangential 0.010000000000011GN ball.f64
 fails "more than friction bears" 1 'friction bears 1e+07 N' $slip --tangential 0.02GN ball.f64
+# Plane strain: the compliances are equal; antiplane shear: 1 / (1 - nu).
+perl -e 'print pack "d<*", map { 1e-6 * cos($_ * 0.0245436926) } 0..255' >slide.f64
+for g in 256x1 1x256; do
+	bemcontact --raw $g --pixel 1um -E 210GPa --boundary periodic --pressure 100MPa -u 0.3 --tangential 7.68mN slide.f64 >slip.nrrd
+	key tangential_displacement slip.nrrd
+done >moved
+near "ridges along the tangential load move farther than those across it" \
+	"$(awk '{ d[NR] = $1 } END { printf "%.9f", d[2] / d[1] }' moved)" 1.4285714 1e-6
+near "ridges that slide across have moved mu times the indentation" \
+	"$(awk -v d="$(key indentation slip.nrrd)" 'NR == 1 { print $1 / (0.3 * d) }' moved)" 1 1e-9
 fails "shear without a tangential load" 2 'requires --tangential' \
 	bemcontact --pressure 1Pa --estar 1GPa --fields shear
 fails "a tangential load without friction" 2 'need one another' \

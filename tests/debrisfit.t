@@ -187,8 +187,8 @@ debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --a
 is 'an audit of a sound surrogate passes' $? 0
 near 'the requested share of surfaces is audited' "$(column surfaces_audited stats)" 8 5
 awk -F '\t' -v OFS='\t' '/^#/ { next } $1 == "total" { $3 /= 100 } { print }' surrogate.tsv >wrong.tsv
-debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit 0.3 hidden.nrrd >/dev/null 2>said
-is 'an audit of a wrong surrogate fails with status 3' $? 3
+debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit 0.3 hidden.nrrd >rows 2>said
+is 'an audit of a wrong surrogate fails with status 3' "$? $(grep -c '^# doubtful: the surrogate' rows)" '3 1'
 like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within their intervals'
 
 fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
@@ -202,9 +202,11 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 debrisfit --yield 250MPa:500MPa --friction 0:0.5 rough.nrrd >doubtful.tsv 2>said
 is 'a fit with a contact that did not converge is doubtful' "$? $(sed -n 's/^# doubtful: //p' doubtful.tsv)" \
 	'3 a contact did not converge'
-debrisgen --yield 355MPa --friction 0.3 --surrogate doubtful.tsv --width 10 --audit 0 hidden.nrrd >out 2>said
+debrisgen --yield 355MPa --friction 0.3 --surrogate doubtful.tsv --width 10 --audit 0 --summary steps.tsv hidden.nrrd >doubted.tsv 2>said
 is 'particles of a doubtful surrogate have status 3' \
 	"$? $(grep -c 'doubtful.tsv: doubtful by its own account: a contact did not converge' said)" '3 1'
+is 'both tables say so' "$(grep -c '^# doubtful: the surrogate' doubted.tsv) $(grep -c '^# doubtful: the surrogate' steps.tsv)" '1 1'
+fails 'statistics of these particles' 3 'doubtful by its own account: the surrogate' debrisstat doubted.tsv
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v 'oblique' surrogate.tsv | grep -v '^#' >part.tsv
 fails 'a part of a surrogate' 1 'not a complete surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd

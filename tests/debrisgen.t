@@ -299,6 +299,27 @@ cat cut.nrrd cut.nrrd >twice.nrrd
 $wear twice.nrrd 2>err >cut.tsv
 is "the table says which realisations are cut off" "$(sed -n 's/^# doubtful: //p' cut.tsv | tr '\n' ';')" \
 	'realisation 0: particles are cut off at the border of the grid;realisation 1: particles are cut off at the border of the grid;'
+# Worn surfaces keep what their contact was solved with.
+roughgen -n 32 -L 0.25mm -q 1um -l 30um -c 2 -s 4 |
+	bemcontact --boundary periodic --pressure 30MPa -E 210GPa --hardness 3GPa >pair.nrrd
+debrisgen -Y 355MPa --steps 2 --pressure 30MPa --surface states.nrrd pair.nrrd >inside.tsv 2>err
+debrisgen -Y 355MPa --surface first.nrrd pair.nrrd >1.tsv 2>err
+bemcontact --pressure 30MPa -E 210GPa first.nrrd | debrisgen -Y 355MPa >2.tsv 2>err
+for f in inside 1 2; do rows $f.tsv; done | sort | uniq -c | awk '{ n[$1]++ } END { for (i in n) printf "%s ", i }' >a
+is "a loop over periodic surfaces keeps boundary and hardness without options" "$(cat a)" "2 "
+is "a worn surface states its contact" "$(strings first.nrrd | grep -E '^(boundary|hardness|estar):=' | sort | uniq -c | awk '{ print $1 }' | tr '\n' ' ')$(
+	strings first.nrrd | grep -c '^boundary:=periodic$')" "2 2 2 2"
+
+# Two surfaces of one number would be one of twice the volume to debrisstat.
+cat pair.nrrd pair.nrrd >four.nrrd
+debrisgen -Y 355MPa pair.nrrd >t.tsv 2>err
+is "surfaces of different numbers give no warning" "$? $(cat err)" "0 "
+debrisgen -Y 355MPa four.nrrd >t.tsv 2>err
+is "two surfaces of one number are marked" "$? $(grep -c 'record 3: realisation 0, step 1, as an earlier record' err) $(grep -c . err) $(
+	sed -n 's/^# doubtful: //p' t.tsv | tr '\n' ';')" \
+	"3 1 1 realisation 0: more than one surface has this number;realisation 1: more than one surface has this number;"
+debrisgen -Y 355MPa states.nrrd >t.tsv 2>err
+is "two states of one surface are not" "$? $(cat err)" "0 "
 fails "debrisstat gives status 3 for particles that are cut off" 3 'doubtful by its own account: realisation 1: particles are cut off' \
 	debrisstat cut.tsv
 is "the statistics of doubtful particles are doubtful" "$(grep -c '^# doubtful: realisation 1' out)" 1

@@ -159,7 +159,7 @@ fails "a worn counterface without a counterface" 2 '\--counter-surface requires 
 fails "a slide without a counterface" 2 "requires --counterface" $wear --slide 0.125mm a.nrrd
 fails "the wear of a missing second body" 2 "requires --counterface" $wear --wears both start.nrrd
 cat b.nrrd b.nrrd >two.nrrd
-cat a.nrrd a.nrrd a.nrrd >three.nrrd
+roughgen --points 48 --length 0.5mm --sq 0.4um --corr 40um --count 3 >three.nrrd
 fails "two counterfaces for three surfaces" 1 "2 records are fewer" sh -c "$wear --counterface two.nrrd three.nrrd >p"
 fails "a counterface of another size" 1 "120x48 cells over 48x48: want as many" $wear --counterface long.nrrd a.nrrd
 roughgen --points 48 --length 1mm --sq 0.4um >wide.nrrd

@@ -248,7 +248,8 @@ near "the sliding speed determines the step time" "$(cell speed.out 1 q50)" \
 fails "a state for a new pair" 2 'new reads no state, not even steps.tsv' rwl $new --wear steps.tsv --step-time 1h steps.tsv
 fails "two states" 2 'state even.tsv: the state is also the operand steps.tsv' \
 	rwl --wear steps.tsv --state even.tsv steps.tsv
-cat particles.tsv particles.tsv >doubled.tsv
+grep -v "^#" particles.tsv >once.tsv
+cat once.tsv once.tsv >doubled.tsv
 fails "two ensembles of the same numbers" 1 'the numbers of joined ensembles must differ' \
 	rwl $new --wear doubled.tsv --step-time 1h
 rwl $new --threshold-volume 0.2 --area 2346 --wear even.tsv --step-time 1h 2>&1 >out | sed 's/^rwl: //' >err

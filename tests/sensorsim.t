@@ -229,6 +229,32 @@ fails "the exponent of a profile that has none" 2 '\--exponent requires --profil
 fails "a mains frequency without mains" 2 '\--mains-frequency requires --mains' sensorsim --mains-frequency 60Hz one.tsv
 fails "events without an end" 2 'require --duration' sensorsim --bubbles 1 one.tsv
 
+# doubts about the particles
+for late in 0.02 5; do
+	printf 'time\tdiameter\n0.01\t1e-4\n%s\t1e-4\n# doubtful: cut off\n' $late |
+		sensorsim --duration 1s --truth doubted.tsv >doubted.au 2>err
+	is "particles of a doubtful table are marked, also if the last one is at $late s of a record of 1 s" \
+		"$? $(grep -c 'doubtful by its own account: cut off' err) $(grep '^# doubtful' doubted.tsv)" \
+		"3 1 # doubtful: cut off"
+done
+printf '# doubtful: cut off\ndiameter\n1e-4\n' | sensorsim --duration 1s --truth - >doubted.tsv 2>err
+is "so are those of a doubtful table without times" "$? $(grep '^# doubtful' doubted.tsv)" "3 # doubtful: cut off"
+ok "a record of doubtful particles is complete" records --check doubted.au
+
+# Events that are no particles are no particles to those that read the table.
+sensorsim --uniform 100um:200um --number 20 --duration 4s --bubbles 1 --shocks 1 --impulses 1 --transients 1 --dropouts 1 \
+	--truth events.tsv >/dev/null
+ok "all kinds of events occur" [ "$(column kind events.tsv | sort -u | wc -l)" = 6 ]
+debriscount --duration 4s events.tsv >count.tsv 2>err
+is "debriscount counts the particles among them" "$? $(column rows count.tsv) $(cat err)" "0 20 "
+awk -F '\t' '/^#/ { next } !k { for (i = 1; i <= NF; i++) if ($i == "kind") k = i } $k != "bubble" && $k != "shock" &&
+	$k != "impulse" && $k != "transient" && $k != "dropout"' events.tsv >particles.tsv
+wear-volume events.tsv >volume.tsv 2>err
+is "wear-volume adds up the particles among them" "$? $(column y volume.tsv | tail -n 1)" \
+	"0 $(wear-volume particles.tsv | column y /dev/stdin | tail -n 1)"
+abrade --gap 100um --hardness 4GPa -u 0.1 --motion groove events.tsv >worn.tsv 2>err
+is "abrade takes the particles among them" "$? $(column diameter worn.tsv | wc -l)" "0 20"
+
 # what it refuses
 fails "no table" 1 'none.tsv' sensorsim none.tsv
 printf 'time\tsize\n0\t1\n' >bad.tsv

@@ -185,8 +185,16 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' c.nrrd)" >again; echo again)"
 	x3p I 1e-9 00000000000000000000000000000000
 	fails "x3p that is damaged" 1 'md5 differs' surfunzip "a b.x3p"
+	printf '\000\000\200\077\000\000\000\100\000\000\100\100\000\000\200\100\000\000\240\100\000\000\300\100' >bindata/data.bin
+	for scale in 1 1e-6 ''; do
+		x3p F "$scale" ''
+		surfunzip "a b.x3p" 2>err >c.nrrd
+		echo "$(heights c.nrrd) $(grep -c 'an increment of 1e-6, which is not applied' err)"
+	done >floats
+	is "floats of an x3p are metres, and a warning says that an increment is not applied" "$(tr '\n' ';' <floats)" \
+		"1 2 3 4 5 6 0;1 2 3 4 5 6 1;1 2 3 4 5 6 0;"
 	x3p D 1 ""
-	fails "x3p with too few samples" 1 'want 48 bytes, got 12' surfunzip "a b.x3p"
+	fails "x3p with too few samples" 1 'want 48 bytes, got 24' surfunzip "a b.x3p"
 	printf '\0\0\200\077\044\044\164\111' >LAYER_0.raw # 1, 1000002.25
 	printf '\0\0\200\077\020\044\164\111' >LAYER_0.raw # 1, 1000001
 	printf '<xml><GENERAL><IMAGE_SIZE_X>2</IMAGE_SIZE_X><IMAGE_SIZE_Y>1</IMAGE_SIZE_Y><FOV_X>0.5</FOV_X><FOV_Y>0.5</FOV_Y></GENERAL></xml>' >index.xml
@@ -241,6 +249,13 @@ printf 'nan nan\n' >gone.txt
 fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
 printf '0,1\n1,2\n5,3\n' >uneven.csv
 fails "places at unequal steps" 1 'equally spaced' surfimport --profile --height-unit 1um uneven.csv
+# Bytes that are neither text nor zeros: a row or a column that the header does not count.
+for f in b.sdf s.sur; do
+	{ cat $f && printf '\0\001\002\0'; } >more
+	fails "more samples than the header of $f counts" 1 'more: more than the .* samples of its header' surfimport more
+	{ cat $f && printf '\r\n*\r\nOperator = Tom\r\n' && zeros 9; } >more
+	ok "text and zeros may follow the samples of $f" surfimport more
+done
 head -c 100 s.sur >cut.sur
 fails "a header that is cut off" 1 'want 512 bytes of a .sur header' surfimport cut.sur
 head -c 530 s.sur >cut.sur
@@ -299,8 +314,11 @@ fails "positions above the heights alone" 1 'first row is equally spaced' \
 tail -n 4 beside.txt >few.txt
 ok "few equally spaced heights are no positions" surfimport --pixel 1um --height-unit 1um few.txt
 sort -r -n places.txt >back.txt
-surfimport --profile --height-unit 1um places.txt >b.nrrd
-surfimport --profile --height-unit 1um back.txt >c.nrrd
+surfimport --profile --pixel 2mm --height-unit 1um places.txt >b.nrrd
+surfimport --profile --pixel 2mm --height-unit 1um back.txt >c.nrrd
+is "a spacing is given for positions without a unit" "$(list nx b.nrrd) $(list dx b.nrrd)" "9 0.002"
+fails "positions without a unit" 1 'does not state the spacing: specify --pixel' \
+	surfimport --profile --height-unit 1um places.txt
 is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
 fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
 done_testing

@@ -83,6 +83,19 @@ double kernel_patch(double dx, double dy, double x, double y)
 	       kernel_patch(dx, dy / 2, x, y + dy / 4);
 }
 
+static double corner_along(double x, double y)
+{
+	return y != 0 ? y * asinh(x / fabs(y)) : 0;
+}
+
+double kernel_patch_along(double dx, double dy, double x, double y)
+{
+	double x1 = x - dx / 2, x2 = x + dx / 2, y1 = y - dy / 2, y2 = y + dy / 2;
+
+	return corner_along(x2, y2) - corner_along(x2, y1) - corner_along(x1, y2) +
+	       corner_along(x1, y1);
+}
+
 double kernel_modulus(double e1, double nu1, double e2, double nu2)
 {
 	return 1 / ((1 - nu1 * nu1) / e1 + (1 - nu2 * nu2) / e2);

@@ -38,6 +38,10 @@ struct contact_kernel kernel_coated(const struct kernel_coating *coating);
  * |x| = dx / 2 and |y| = dy / 2, any aspect. */
 double kernel_patch(double dx, double dy, double x, double y);
 
+/* The part of I with the weight cos^2 of the angle to x, the integral of x^2 / r^3, to
+ * some 1e-16 times the square of the distance in cells. */
+double kernel_patch_along(double dx, double dy, double x, double y);
+
 /* 1 / E* = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, (2-4); E2 = INFINITY is rigid. */
 double kernel_modulus(double e1, double nu1, double e2, double nu2);
 

@@ -118,7 +118,7 @@ struct source *particles_read(const char *path)
 {
 	struct source *s = xcalloc(1, sizeof *s);
 	struct table_in *t = table_open(path);
-	int more = table_next(t), cd, ca, cr, cs, cv;
+	int more = table_next(t), shaped = 1, cd, ca, cr, cs, cv;
 
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
@@ -133,8 +133,11 @@ struct source *particles_read(const char *path)
 		if (room_for(&s->row, &s->room, s->rows + 1, sizeof *s->row))
 			die(EXIT_RUN, "out of memory");
 		r.diameter = table_diameter(t, cd);
-		if (ca >= 0)
+		/* A surrogate gives none, and particles without end have none. */
+		if (ca >= 0 && !isnan(table_number(t, ca)))
 			r.aspect = table_positive(t, ca);
+		else
+			shaped = 0;
 		if (r.aspect < 1)
 			die(EXIT_RUN, "%s: line %ld: aspect is %g, want 1 or more",
 				table_name(t), table_line(t), r.aspect);
@@ -146,7 +149,7 @@ struct source *particles_read(const char *path)
 		s->row[s->rows++] = r;
 	}
 	s->apart = cr >= 0;
-	s->shaped = ca >= 0;
+	s->shaped = shaped;
 	s->stepped = cs >= 0;
 	if (table_upstream(t))
 		s->upstream = xstrdup(table_upstream(t));

@@ -31,7 +31,7 @@ struct source *particles_drawn(
 	const struct population *p, double area, double gap, uint64_t seed);
 /* The next gap; 0 at the end. */
 int particles_next(struct source *s, struct particles_in *in);
-/* 1 if the table has a column of aspects. */
+/* 1 if all rows have an aspect. */
 int particles_shaped(const struct source *s);
 /* 1 if the table has a column of realisations. */
 int particles_apart(const struct source *s);

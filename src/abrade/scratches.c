@@ -3,17 +3,12 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/moments.h"
 #include "io/fields.h"
 #include "num/philox.h"
 #include "num/room.h"
 #include <math.h>
 #include <stdlib.h>
-
-/* The state of a surface. */
-struct moment {
-	long realisation;
-	double step; /* INFINITY: not known */
-};
 
 struct scratch {
 	struct moment from;
@@ -23,8 +18,7 @@ struct scratch {
 
 static struct scratch *list;
 static size_t n, room;
-static struct moment *seen; /* by the records so far */
-static size_t records, seen_room;
+static struct moments seen;
 
 void scratches_add(
 	long realisation, long step, double diameter, double depth, double share)
@@ -33,20 +27,6 @@ void scratches_add(
 		die(EXIT_RUN, "out of memory");
 	list[n++] = (struct scratch){ { realisation, (double)step }, diameter, depth,
 		share, 0 };
-}
-
-/* Whether an earlier record is of this realisation and step. */
-static int is_again(struct moment m)
-{
-	size_t i = 0;
-
-	while (i < records &&
-		!(seen[i].realisation == m.realisation && seen[i].step == m.step))
-		i++;
-	if (room_for(&seen, &seen_room, records + 1, sizeof *seen))
-		die(EXIT_RUN, "out of memory");
-	seen[records] = m;
-	return i < records++;
 }
 
 /* A surface keeps the grooves of earlier steps. */
@@ -75,7 +55,7 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 		if (r.nz != 1)
 			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
 				fields_name(in), fields_count(in), r.nz);
-		*again += (size_t)is_again(now);
+		*again += (size_t)moments_again(&seen, now);
 		for (size_t i = 0; i < n; i++) {
 			struct groove g = { .length = list[i].share * length,
 				.diameter = list[i].diameter,
@@ -116,6 +96,6 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 			fields_name(in), laps);
 	fields_close(in);
 	free(list);
-	free(seen);
+	free(seen.of);
 	return left;
 }

@@ -69,8 +69,6 @@ static void check_options(void)
 	press_check();
 	if (isnan(press.load) && isnan(press.pressure) && isnan(press.approach))
 		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
-	if (isnan(press.estar))
-		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	opt_require("coating", "coating-young coating-poisson");
 	opt_require("table", "sweep unload");
 	if (coating.thickness > 0)
@@ -309,6 +307,10 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	struct contact_result found = { 0 };
 
 	t.par = press_par(r, pool);
+	if (isnan(t.par.estar))
+		die(EXIT_USAGE,
+			"%s: record %ld states no contact modulus: specify either --estar or --young and --poisson",
+			t.name, t.number);
 	t.par.progress = tell;
 	t.par.kernel = coating.thickness > 0 ? &coated : NULL;
 	t.c = solver_for(r, &t.par, t.name, t.number);

@@ -55,13 +55,14 @@ int slip_solve(const struct task *t, const struct contact_result *normal, double
 	struct slip_bodies b = bodies();
 	struct slip_result found;
 	enum contact_status status;
+	double along;
 
 	if (t->par.hardness > 0)
 		die(EXIT_RUN,
 			"%s: record %ld: a hardness of %g Pa: --tangential is for elastic bodies",
 			t->name, t->number, t->par.hardness);
-	status = contact_slip(t->c, t->h, t->p, normal, friction, tangential / area,
-		slip_compliance(&b), shear, &found);
+	status = contact_slip(
+		t->c, t->h, t->p, normal, friction, tangential / area, shear, &found);
 	if (status == CONTACT_OVERLOAD)
 		die(EXIT_RUN,
 			"%s: record %ld: --tangential %g N slips: friction bears %g N",
@@ -69,10 +70,13 @@ int slip_solve(const struct task *t, const struct contact_result *normal, double
 	if (status == CONTACT_NOCONV)
 		warn("%s: record %ld: part that sticks not converged: optimality gap %.2g",
 			t->name, t->number, contact_result(t->c)->optimality_gap);
+	if (slip_along(t->c, shear, &along) != NUM_OK)
+		die(EXIT_RUN, "no memory");
 	count_work(contact_result(t->c), 1);
 	record_set(t->r, "friction", "%.17g", friction);
 	record_set(t->r, "tangential_load", "%.17g", found.load);
-	record_set(t->r, "tangential_displacement", "%.17g", found.displacement);
+	record_set(t->r, "tangential_displacement", "%.17g",
+		slip_compliance(&b, along) * found.displacement);
 	record_set(t->r, "stick_area", "%.17g", found.stick);
 	return status == CONTACT_OK;
 }

@@ -144,7 +144,8 @@ int press_given(const struct record *r, const char *name, long number)
 
 void press_record(struct record *r, const struct contact_par *par)
 {
-	record_set(r, "estar", "%.17g", par->estar);
+	if (!isnan(par->estar))
+		record_set(r, "estar", "%.17g", par->estar);
 	record_set(r, "boundary", "%s", boundaries[par->boundary]);
 	if (par->hardness > 0)
 		record_set(r, "hardness", "%.17g", par->hardness);

@@ -7,7 +7,7 @@
 static int doubtful_too;
 static double doubtful, unresolved, foreign, non_ferrous, unclear;
 static double signs[2]; /* rows of positive and of negative amplitude */
-static int class_column = -1, amplitude_column = -1;
+static int class_column = -1, amplitude_column = -1, kind_column = -1;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
@@ -17,7 +17,8 @@ struct opt verdict_rows[] = {
 
 static int is_event(const char *word)
 {
-	static const char *const events[] = { "shock", "bubble", "impulse", "transient" };
+	static const char *const events[] = { "shock", "bubble", "impulse", "transient",
+		"dropout" };
 
 	for (size_t i = 0; i < sizeof events / sizeof *events; i++)
 		if (strcmp(word, events[i]) == 0)
@@ -31,6 +32,7 @@ int verdict_column(struct table_in *t)
 
 	class_column =
 		non_ferrous_known() ? table_need(t, "class") : table_find(t, "class");
+	kind_column = table_find(t, "kind");
 	amplitude_column =
 		column >= 0 && class_column < 0 ? table_find(t, "amplitude") : -1;
 	return column;
@@ -45,7 +47,8 @@ enum verdict verdict_of(const struct table_in *t, int column)
 {
 	const char *word = column < 0 ? "alone" : table_text(t, column);
 
-	if (is_event(word)) {
+	if (is_event(word) ||
+		(kind_column >= 0 && is_event(table_text(t, kind_column)))) {
 		foreign++;
 		return VERDICT_FOREIGN;
 	}
@@ -74,7 +77,7 @@ void verdict_report(void)
 		     "takes them in",
 			doubtful);
 	if (foreign > 0)
-		note("%.0f rows are shocks, bubbles, impulses or transients, not particles",
+		note("%.0f rows are shocks, bubbles or other events, not particles",
 			foreign);
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",

@@ -12,8 +12,8 @@ enum verdict {
 	VERDICT_SURE,       /* alone, overlap, or a table without verdicts */
 	VERDICT_DOUBTFUL,   /* any other word: left out, unless --doubtful is given */
 	VERDICT_UNRESOLVED, /* a row that represents many */
-	VERDICT_FOREIGN     /* shock, bubble, impulse, transient: no particle, left out;
-			       it may lack a time */
+	VERDICT_FOREIGN /* shock, bubble, impulse, transient, also by the column kind of
+			   sensorsim: no particle, left out; it may lack a time */
 };
 
 /* The column of verdicts, or -1; finds that of classes, too. */

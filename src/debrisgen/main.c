@@ -4,12 +4,14 @@
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/contact_options.h"
+#include "common/moments.h"
 #include "io/fields.h"
 #include "num/pages.h"
 #include "outputs.h"
 #include "quick.h"
 #include "wear_steps.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Share of the load on the outermost cells that is worth a warning: what they carry in
  * full contact of 80 x 80 cells. */
@@ -60,6 +62,8 @@ struct run {
 	struct worn *out; /* NULL before the first record */
 	int status;
 	const char *doubt; /* why the present record is doubtful, NULL: it is not */
+	struct moments worn;
+	int again; /* an earlier record had a step of a later one */
 };
 
 /* The table says it too, since the exit status is lost in a pipe. */
@@ -237,6 +241,21 @@ static struct worn_conditions conditions_of(const struct scene *c)
 		.distance = amplification * wearing_length(r) };
 }
 
+/* Tables count the particles of two surfaces as those of one. */
+static void check_again(struct run *run, long realisation, long step)
+{
+	struct moment m = { realisation, (double)step };
+
+	if (!moments_again(&run->worn, m))
+		return;
+	if (!run->again)
+		warn("%s: record %ld: realisation %ld, step %ld, as an earlier record: "
+		     "joined ensembles need different numbers, roughgen --first",
+			fields_name(run->in), fields_count(run->in), realisation, step);
+	run->again = 1;
+	doubt(run, "more than one surface has this number");
+}
+
 /* Wears one surface step by step. */
 static void wear_record(struct run *run, struct record *r)
 {
@@ -261,11 +280,16 @@ static void wear_record(struct run *run, struct record *r)
 			break;
 		}
 		wear_step(run, &c, c.done + k);
+		check_again(run, r->realisation, c.done + k);
 	}
 	if (k > 1)
 		worn_end(run->out, r->realisation, c.done + k - 1);
-	if (run->doubt)
-		worn_doubt(run->out, r->realisation, run->doubt);
+	if (run->doubt) {
+		char *why = xprintf("realisation %ld: %s", r->realisation, run->doubt);
+
+		worn_doubt(run->out, why);
+		free(why);
+	}
 }
 
 static void warn_of_edge(struct run *run)
@@ -316,9 +340,12 @@ int main(int argc, char **argv)
 	progress_clear();
 	warn_of_edge(&run);
 	warn_of_border(&run);
-	if (!wearing_warn(run.wearing))
-		run.status = EXIT_NOCONV;
+	if (!wearing_warn(run.wearing)) {
+		doubt(&run, "the surrogate is of other surfaces, or doubtful itself");
+		worn_doubt(run.out, run.doubt);
+	}
 	worn_close(run.out);
+	free(run.worn.of);
 	wearing_close(run.wearing);
 	fields_close(run.in);
 	record_free(&r);

@@ -1,5 +1,6 @@
 #include "outputs.h"
 #include "cli/msg.h"
+#include "common/contact_options.h"
 #include "io/tables.h"
 #include "num/grid.h"
 #include "num/student.h"
@@ -312,9 +313,11 @@ static void put_surface(
 	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
 	size_t bytes = grid_size(c->r->nx, c->r->ny) * sizeof *c->h;
+	struct contact_par par = press_par(c->r, NULL);
 	struct record out = { 0 };
 
 	bare_record(&out, c->r, "--surface", s->number);
+	press_record(&out, &par);
 	memcpy(record_add(&out, "height", "m"), c->h, bytes);
 	/* The next solution starts from it, here as in a pipeline. */
 	memcpy(record_add(&out, "pressure", "Pa"), c->p, bytes);
@@ -419,12 +422,11 @@ void worn_end(struct worn *w, long realisation, long step)
 	table_comment(w->particles, "last_step", "%ld", step);
 }
 
-void worn_doubt(struct worn *w, long realisation, const char *why)
+void worn_doubt(struct worn *w, const char *why)
 {
-	table_comment(w->particles, "doubtful", "realisation %ld: %s", realisation, why);
+	table_comment(w->particles, "doubtful", "%s", why);
 	if (w->summary)
-		table_comment(
-			w->summary, "doubtful", "realisation %ld: %s", realisation, why);
+		table_comment(w->summary, "doubtful", "%s", why);
 }
 
 void worn_close(struct worn *w)

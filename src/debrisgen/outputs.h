@@ -63,8 +63,8 @@ void worn_begin(
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s);
 /* The realisation has been worn up to this step. */
 void worn_end(struct worn *w, long realisation, long step);
-/* The rows of the realisation are doubtful. */
-void worn_doubt(struct worn *w, long realisation, const char *why);
+/* Why rows are doubtful. */
+void worn_doubt(struct worn *w, const char *why);
 void worn_close(struct worn *w);
 
 #endif

@@ -184,6 +184,7 @@ int main(int argc, char **argv)
 	struct signal_format format = { .rate = sensors_rate(), .single = single };
 	struct traffic f = { 0 };
 	struct table_out *table = NULL;
+	const char *doubt;
 
 	source_check(argc - i);
 	sensors_check();
@@ -212,10 +213,13 @@ int main(int argc, char **argv)
 		free(number);
 		free(cmd);
 	}
+	doubt = source_doubted(f.source);
+	if (table && doubt)
+		table_comment(table, "doubtful", "%s", doubt);
 	if (table)
 		table_done(table);
 	scene_free(f.scene);
 	disturbances_free(f.disturbances);
 	source_close(f.source);
-	return shell_done(0);
+	return shell_done(doubt ? EXIT_NOCONV : EXIT_SUCCESS);
 }

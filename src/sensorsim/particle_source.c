@@ -59,8 +59,7 @@ struct opt source_rows[] = {
 struct source {
 	struct stream stream;
 	struct arrivals *arrivals; /* NULL: the table has times */
-	struct table_in *table; /* NULL: particles are drawn, or the table was read into
-				   diameters */
+	struct table_in *table;    /* NULL: particles are drawn */
 	int time_column, diameter_column, velocity_column, material_column, kind_column;
 	double *diameters; /* of a table without times */
 	const struct material **materials;
@@ -189,8 +188,6 @@ static void read_diameters(struct source *s)
 	}
 	if (table_upstream(s->table))
 		s->cmd = xstrdup(table_upstream(s->table));
-	table_close(s->table);
-	s->table = NULL;
 	make_arrivals(s, n);
 }
 
@@ -279,7 +276,7 @@ static int next_row(struct source *s, struct passage *p)
 
 static int next_particle(struct source *s, struct passage *p)
 {
-	if (s->table) {
+	if (!s->arrivals) {
 		if (!next_row(s, p))
 			return 0;
 	} else if (!arrivals_next(s->arrivals, &p->time[0])) {
@@ -334,6 +331,16 @@ double source_slowest(const struct source *s)
 const char *source_cmd(const struct source *s)
 {
 	return s->cmd;
+}
+
+const char *source_doubted(struct source *s)
+{
+	if (!s->table)
+		return NULL;
+	/* The comment may follow the rows, of which the last may be after the record. */
+	while (table_next(s->table))
+		;
+	return table_doubted(s->table);
 }
 
 void source_close(struct source *s)

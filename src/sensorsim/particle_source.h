@@ -32,6 +32,8 @@ const char *source_material(const struct source *s); /* of the last one */
 /* Velocity that none of them is below, m/s. */
 double source_slowest(const struct source *s);
 const char *source_cmd(const struct source *s); /* that made the table, or NULL */
+/* At the end: why its table is doubtful, with a warning, or NULL. */
+const char *source_doubted(struct source *s);
 void source_close(struct source *s);
 
 #endif

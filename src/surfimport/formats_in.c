@@ -1,5 +1,6 @@
 #include "formats_in.h"
 #include "cli/msg.h"
+#include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -57,9 +58,10 @@ static double number(const struct content *c, size_t at, enum sample_type type)
 }
 
 /* Rows of nx samples, stride bytes apart, from at on; missing is a sample, rounded as the
- * samples are, nan for none. */
-static void take(const struct content *c, size_t at, size_t stride, enum sample_type type,
-	int big_endian, double scale, double missing, struct record *r)
+ * samples are, nan for none.  Returns where they end. */
+static size_t take(const struct content *c, size_t at, size_t stride,
+	enum sample_type type, int big_endian, double scale, double missing,
+	struct record *r)
 {
 	double *z = r->data[0];
 	size_t nx = (size_t)r->nx, ny = (size_t)r->ny;
@@ -77,6 +79,22 @@ static void take(const struct content *c, size_t at, size_t stride, enum sample_
 
 			*z++ = v == missing ? NAN : v * scale;
 		}
+	return at + stride * (ny - 1) + nx * width_of[type];
+}
+
+/* Text or zeros may follow the samples; other bytes are samples that the header does not
+ * count. */
+static void check_rest(const struct content *c, size_t at, const struct record *r)
+{
+	size_t end = c->size;
+
+	while (end > at && c->data[end - 1] == '\0')
+		end--;
+	for (; at < end; at++)
+		if (iscntrl((unsigned char)c->data[at]) &&
+			!isspace((unsigned char)c->data[at]))
+			die(EXIT_RUN, "%s: more than the %d x %d samples of its header",
+				c->name, r->nx, r->ny);
 }
 
 /* ---- properties from the file and the command line ---- */
@@ -340,7 +358,7 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 		missing = -32768;
 	if (isnan(missing) && types[type] == INT32)
 		missing = -2147483648.0;
-	take(c, HEADER, 0, types[type], 0, unit, missing, r);
+	check_rest(c, take(c, HEADER, 0, types[type], 0, unit, missing, r), r);
 }
 
 static void sdf_read(const struct content *c, const struct told *told, struct record *r)
@@ -396,7 +414,9 @@ static void sur_read(const struct content *c, const struct told *told, struct re
 		missing = lowest - 2;
 	at = HEADER + (size_t)number(c, 334, UINT16) + (size_t)number(c, 336, UINT16);
 	new_heights(c, number(c, 108, INT32), number(c, 112, INT32), dx, dy, r);
-	take(c, at, 0, bits == 16 ? INT16 : INT32, 0, scale, missing, r);
+	at = take(c, at, 0, bits == 16 ? INT16 : INT32, 0, scale, missing, r);
+	if (number(c, 14, INT16) == 1) /* objects in the file */
+		check_rest(c, at, r);
 	for (size_t i = 0; i < (size_t)r->nx * (size_t)r->ny; i++)
 		r->data[0][i] += offset;
 }

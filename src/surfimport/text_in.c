@@ -275,8 +275,6 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 			t->c->name, t->columns, t->rows);
 	x_unit = unit_of(t, 1);
 	unit = settle_unit(t->c, told, unit_of(t, 0));
-	if (isnan(x_unit))
-		x_unit = unit;
 	dx = (x[(n - 1) * w] - x[0]) / (double)(n - 1);
 	/* Positions may be rounded to a 25th of the spacing. */
 	for (size_t i = 0; i < n; i++)
@@ -285,7 +283,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 				"%s: row %zu: position %g, want %g: positions must be equally spaced",
 				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
 	first = dx < 0 ? n - 1 : 0; /* from the lowest position on */
-	dx = fabs(dx) * x_unit;
+	dx = fabs(dx) * x_unit;     /* nan if no heading states the unit */
 	dy = dx;
 	settle_pixel(t->c, told, &dx, &dy);
 	z = new_heights(t->c, (double)n, 1, dx, dx, r);

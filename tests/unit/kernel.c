@@ -196,6 +196,9 @@ int main(void)
 			"the coefficients of cells 1:%g are right along rows, columns and the diagonal: relative error %.1e",
 			a, e);
 	}
+	near((kernel_patch_along(1, 3, 2, 5) + kernel_patch_along(3, 1, 5, 2)) /
+			kernel_patch(1, 3, 2, 5),
+		1, 1e-13, "the parts along x and y are the whole");
 	near(kernel_patch(1, 1, 0, 0), 4 * asinh(1), 1e-15,
 		"the coefficient under its own square cell is 4 asinh 1");
 	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15,

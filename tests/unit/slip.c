@@ -78,7 +78,7 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 	double load = 50;
 	struct ball b = ball_new(n, load, 0);
 	double area = 9 * b.a * b.a, p0 = 1.5 * load / (M_PI * b.a * b.a);
-	double rest = cbrt(1 - part), sum = 0, inside = 0, over = 0, moved, stick;
+	double rest = cbrt(1 - part), sum = 0, inside = 0, over = 0, moved, stick, along;
 	double g = steel.young[0] / (2 * (1 + steel.poisson[0]));
 	struct contact_result normal;
 	struct slip_result found = { 0 };
@@ -87,8 +87,8 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 			CONTACT_OK,
 		"a ball of %d cells is solved", n);
 	normal = *contact_result(b.c);
-	ok(contact_slip(b.c, b.h, b.p, &normal, mu, part * mu * load / area,
-		   slip_compliance(&steel), b.q, &found) == CONTACT_OK,
+	ok(contact_slip(b.c, b.h, b.p, &normal, mu, part * mu * load / area, b.q,
+		   &found) == CONTACT_OK,
 		"a ball under %g of its friction is solved", part);
 	near(found.load, part * mu * load, 1e-10 * load, "the shear adds up to the load");
 	for (size_t i = 0; i < b.cells; i++) {
@@ -109,7 +109,9 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 	/* Johnson, 7.42 */
 	moved = 3 * mu * load / (16 * b.a) * 2 * (2 - steel.poisson[0]) / g *
 		(1 - rest * rest);
-	near(found.displacement / moved, 1, e_moved, "the displacement is Mindlin's");
+	ok(slip_along(b.c, b.q, &along) == NUM_OK, "the compliance of a ball is found");
+	near(slip_compliance(&steel, along) * found.displacement / moved, 1, e_moved,
+		"the displacement is Mindlin's");
 	ball_free(&b);
 }
 
@@ -136,10 +138,93 @@ static void wave(double load, double part)
 		h[i] = 1e-3 * cos(2 * M_PI * (i + 0.5) / N);
 	contact_solve(c, h, CONTACT_PRESSURE, load * full, p, NULL);
 	normal = *contact_result(c);
-	contact_slip(c, h, p, &normal, mu, part * mu * load * full, 1, q, &found);
+	contact_slip(c, h, p, &normal, mu, part * mu * load * full, q, &found);
 	ok(fabs(found.stick - want) <= 1. / N + 1e-12,
 		"a wave under %g of its friction and %g of full contact sticks as expected, to a cell",
 		part, load);
+	contact_free(c);
+}
+
+/* Half axes a and b along and across the load: the energy of ellipsoidal shears at the
+ * angle t is in proportion to (a^2 cos^2 t + b^2 sin^2 t)^-1/2. */
+static double along_ellipse(double a, double b)
+{
+	double sum = 0, all = 0;
+
+	for (int i = 0; i < 4096; i++) {
+		double x = cos(M_PI * i / 4096), y = sin(M_PI * i / 4096);
+		double energy = 1 / hypot(a * x, b * y);
+
+		all += energy;
+		sum += x * x * energy;
+	}
+	return sum / all;
+}
+
+/* Parabolas of these curvatures, 1/m, on 48 x 96 cells of unit modulus. */
+static void ellipse(double kx, double ky, enum contact_multiply multiply)
+{
+	enum { NX = 48, NY = 96 };
+	struct contact_par par = { .nx = NX,
+		.ny = NY,
+		.dx = 2. / NX,
+		.dy = 2. / NY,
+		.estar = 1,
+		.multiply = multiply,
+		.tolerance = 1e-12,
+		.max_iterations = 1000 };
+	struct contact *c = contact_new(&par);
+	static double h[NX * NY], p[NX * NY], q[NX * NY];
+	double sum = 0, a = 0, b = 0, along = 0;
+	struct contact_result normal;
+	struct slip_result found = { 0 };
+
+	memset(p, 0, sizeof(p));
+	for (int i = 0; i < NX * NY; i++) {
+		double x = (i % NX + 0.5) * par.dx - 1, y = (i / NX + 0.5) * par.dy - 1;
+
+		h[i] = -(kx * x * x + ky * y * y) / 2;
+	}
+	contact_solve(c, h, CONTACT_PRESSURE, 1e-4, p, NULL);
+	normal = *contact_result(c);
+	for (int i = 0; i < NX * NY; i++) {
+		double x = (i % NX + 0.5) * par.dx - 1, y = (i / NX + 0.5) * par.dy - 1;
+
+		sum += p[i];
+		a += x * x * p[i];
+		b += y * y * p[i];
+	}
+	contact_slip(c, h, p, &normal, mu, 0.3 * mu * 1e-4, q, &found);
+	ok(slip_along(c, q, &along) == NUM_OK, "the direction of an ellipse is found");
+	/* error of the axes from second moments, of the order of the cells */
+	near(along, along_ellipse(sqrt(5 * a / sum), sqrt(5 * b / sum)), 2e-3,
+		"the shear of an ellipse has the compliance of its axes");
+	contact_free(c);
+}
+
+/* Shear that varies along its direction is plane strain, across it antiplane. */
+static void ridges(int nx, int ny, double want, double ratio)
+{
+	struct contact_par par = { .nx = nx,
+		.ny = ny,
+		.dx = 1,
+		.dy = 1,
+		.estar = 1,
+		.boundary = CONTACT_PERIODIC,
+		.tolerance = 1e-12,
+		.max_iterations = 1000 };
+	struct contact *c = contact_new(&par);
+	double q[64], along;
+
+	for (int i = 0; i < 64; i++)
+		q[i] = 1 + cos(2 * M_PI * i / 64);
+	ok(slip_along(c, q, &along) == NUM_OK && fabs(along - want) < 1e-12,
+		"%d x %d ridges are %s the load", nx, ny, want > 0 ? "across" : "along");
+	near(slip_compliance(&steel, along), ratio, 1e-12,
+		"and have the compliance of plane strain or of antiplane shear");
+	memset(q, 0, sizeof(q));
+	ok(slip_along(c, q, &along) == NUM_OK && along == 0.5,
+		"no shear has no direction");
 	contact_free(c);
 }
 
@@ -154,19 +239,19 @@ static void limits(void)
 
 	contact_solve(b.c, b.h, CONTACT_PRESSURE, mean, b.p, NULL);
 	normal = *contact_result(b.c);
-	contact_slip(b.c, b.h, b.p, &normal, mu, 0, 1, b.q, &none);
+	contact_slip(b.c, b.h, b.p, &normal, mu, 0, b.q, &none);
 	ok(none.displacement == 0 && none.load == 0 && none.stick == normal.area,
 		"without a tangential load the whole contact sticks");
-	contact_slip(b.c, b.h, b.p, &normal, mu, mu * normal.pressure, 1, b.q, &all);
+	contact_slip(b.c, b.h, b.p, &normal, mu, mu * normal.pressure, b.q, &all);
 	near(all.displacement, mu * normal.indentation, 1e-12 * normal.indentation,
 		"at the limit of friction the displacement is mu times the indentation");
 	ok(all.stick == 0, "at the limit of friction no cell sticks");
-	ok(contact_slip(b.c, b.h, b.p, &normal, mu, 1.001 * mu * mean, 1, b.q, &all) ==
+	ok(contact_slip(b.c, b.h, b.p, &normal, mu, 1.001 * mu * mean, b.q, &all) ==
 			CONTACT_OVERLOAD,
 		"a load above the limit of friction is refused");
 	ok(slip_uncoupled(&steel) && slip_uncoupled(&soft) && !slip_uncoupled(&rigid),
 		"steel on steel and rubber on a rigid body do not couple, steel on a rigid one does");
-	near(slip_compliance(&steel), 1.7 / 1.4, 1e-14,
+	near(slip_compliance(&steel, 0.5), 1.7 / 1.4, 1e-14,
 		"equal bodies are (2 - nu) / (2 (1 - nu)) as compliant along as across");
 	ball_free(&b);
 }
@@ -238,6 +323,11 @@ int main(void)
 	wave(0.3, 0.5);
 	wave(0.8, 0.1);
 	wave(0.05, 0.7);
+	ridges(64, 1, 1, 1);
+	ridges(1, 64, 0, 1 / (1 - 0.3));
+	ellipse(1e-3, 1e-3, CONTACT_FFT);
+	ellipse(1e-3, 6e-3, CONTACT_FFT);
+	ellipse(6e-3, 1e-3, CONTACT_MLMS);
 	limits();
 	unloading();
 	return tap_done();
