@@ -268,22 +268,22 @@ static enum num_status add_tones(const double *y1, const double *y2, size_t n, i
  * drifting baseline leaves falls steeply from bin to bin. */
 enum { NEAR_SIDE = 12 };
 
-/* Frequency at the beginning of y1[0 .. n) of a tone that has frequency omega at its end.
- */
+/* Frequencies at the beginning of y[0 .. n) of tones that have frequencies omega at its
+ * end. */
 static enum num_status track_back(
-	const double *y1, size_t n, size_t hop, double *omega)
+	const double *y, size_t n, size_t hop, int tones, double *omega)
 {
 	double *reversed = malloc(n * sizeof *reversed);
 	struct tones_track track;
 	enum num_status status = reversed ? NUM_OK : NUM_MEMORY;
 
 	for (size_t i = 0; reversed && i < n; i++)
-		reversed[i] = y1[n - 1 - i];
-	tones_track_start(&track, 1, omega, 0, hop);
+		reversed[i] = y[n - 1 - i];
+	tones_track_start(&track, tones, omega, 0, hop);
 	if (reversed &&
 		tones_track_run(&track, reversed, 0, (long long)n, 1) == TONES_MEMORY)
 		status = NUM_MEMORY;
-	*omega = track.omega[0];
+	memcpy(omega, track.omega, (size_t)tones * sizeof *omega);
 	free(reversed);
 	return status;
 }
@@ -319,7 +319,7 @@ static enum num_status add_sweep(const double *y1, const double *y2, size_t n,
 			return status;
 		if (2 * with <= pieces)
 			continue;
-		status = track_back(y1, first * m + m / 2, m / 4, &omega);
+		status = track_back(y1, first * m + m / 2, m / 4, 1, &omega);
 		c->omega[c->tones++] = omega;
 		sort_numbers(c->omega, (size_t)c->tones);
 		*added = 1;
@@ -347,25 +347,51 @@ static enum separate_status compare_levels(const struct record *rec,
 	return SEPARATE_OK;
 }
 
-/* Finds a sweep in rest, 2 n samples, of the record without the tones of c, and keeps it
- * if the record is quieter without it. */
+/* Keeps the tones of c rather than those of before if the record is quieter without them;
+ * *kept: 1 if so. */
+static enum separate_status keep_quieter(const struct record *rec,
+	const struct calibration *before, struct calibration *c, int *kept)
+{
+	double level[2];
+	enum separate_status status = compare_levels(rec, before, c, level);
+
+	*kept = status == SEPARATE_OK && (1 + LINES) * level[0] < level[1];
+	if (!*kept)
+		*c = *before;
+	return status;
+}
+
+/* The line of a sweep has its mean frequency, not that at the beginning of the record:
+ * follows the tones to the end and back. */
+static enum separate_status settle_tones(
+	const struct record *rec, struct calibration *c)
+{
+	const struct calibration before = *c;
+	struct tones_track track;
+	enum separate_status status;
+	int kept;
+
+	memcpy(rec->work, rec->y1, rec->n * sizeof *rec->work);
+	status = take_tones(c, rec->work, rec->n, &track);
+	if (status != SEPARATE_OK)
+		return status;
+	memcpy(c->omega, track.omega, sizeof c->omega);
+	if (track_back(rec->y1, rec->n, c->tone_hop, c->tones, c->omega) != NUM_OK)
+		return SEPARATE_MEMORY;
+	return keep_quieter(rec, &before, c, &kept);
+}
+
+/* Finds a sweep in rest, 2 n samples, of the record without the tones of c. */
 static enum separate_status search_sweep(const struct record *rec, const double *rest,
 	struct calibration *c, int *added)
 {
 	const struct calibration before = *c;
-	double level[2];
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (add_sweep(rest, rest + rec->n, rec->n, c, added) == NUM_OK)
 		status = *added ? choose_hop(rec, c) : SEPARATE_OK;
-	if (status != SEPARATE_OK || !*added)
-		return status;
-	status = compare_levels(rec, &before, c, level);
-	if (!((1 + LINES) * level[0] < level[1])) {
-		*c = before;
-		*added = 0;
-	}
-	return status;
+	return status == SEPARATE_OK && *added ? keep_quieter(rec, &before, c, added)
+					       : status;
 }
 
 /* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
@@ -392,6 +418,8 @@ static enum separate_status search_tones(const struct record *rec, struct calibr
 		if (status == SEPARATE_OK)
 			status = added ? choose_hop(rec, c)
 				       : search_sweep(rec, rest, c, &added);
+		if (status == SEPARATE_OK && added)
+			status = settle_tones(rec, c);
 		side = NEAR_SIDE;
 	}
 	free(rest);
