@@ -146,23 +146,24 @@ static enum separate_status look_for_colour(const struct record *rec, struct loo
 /* Share of its frequency by which a line may wander: ten times what mains do. */
 static const double WANDER = 0.02;
 
-/* Takes the tones from omega, and merges those into which wandering may have split one;
- * returns their number, 0 if others are nearer to each other, or to zero, than gap. */
+/* Takes the tones from omega, and merges those nearer to each other than gap, into which
+ * a change of its frequency may have split one; returns their number, 0 if one is nearer
+ * to zero. */
 static int merge_tones(int tones, const double *omega, double gap, double *merged)
 {
-	int count = 0, near = tones > 0 && omega[0] < gap;
+	int count = 0;
 
+	if (tones > 0 && omega[0] < gap)
+		return 0;
 	for (int k = 0, next; k < tones; k = next) {
 		double sum = omega[k];
 
-		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap &&
-				   omega[next] < (1 + WANDER) * omega[k];
+		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap;
 			next++)
 			sum += omega[next];
-		near |= next < tones && omega[next] - omega[next - 1] < gap;
 		merged[count++] = sum / (next - k);
 	}
-	return near ? 0 : count;
+	return count;
 }
 
 /* Level of the record without these tones, which are followed from hop to hop: by the
@@ -347,15 +348,15 @@ static enum separate_status compare_levels(const struct record *rec,
 	return SEPARATE_OK;
 }
 
-/* Keeps the tones of c rather than those of before if the record is quieter without them;
- * *kept: 1 if so. */
-static enum separate_status keep_quieter(const struct record *rec,
+/* Keeps the tones of c rather than those of before if the record is quieter without them,
+ * by more than this share of the noise; *kept: 1 if so. */
+static enum separate_status keep_quieter(const struct record *rec, double share,
 	const struct calibration *before, struct calibration *c, int *kept)
 {
 	double level[2];
 	enum separate_status status = compare_levels(rec, before, c, level);
 
-	*kept = status == SEPARATE_OK && (1 + LINES) * level[0] < level[1];
+	*kept = status == SEPARATE_OK && (1 + share) * level[0] < level[1];
 	if (!*kept)
 		*c = *before;
 	return status;
@@ -378,7 +379,7 @@ static enum separate_status settle_tones(
 	memcpy(c->omega, track.omega, sizeof c->omega);
 	if (track_back(rec->y1, rec->n, c->tone_hop, c->tones, c->omega) != NUM_OK)
 		return SEPARATE_MEMORY;
-	return keep_quieter(rec, &before, c, &kept);
+	return keep_quieter(rec, 0, &before, c, &kept);
 }
 
 /* Finds a sweep in rest, 2 n samples, of the record without the tones of c. */
@@ -390,7 +391,7 @@ static enum separate_status search_sweep(const struct record *rec, const double 
 
 	if (add_sweep(rest, rest + rec->n, rec->n, c, added) == NUM_OK)
 		status = *added ? choose_hop(rec, c) : SEPARATE_OK;
-	return status == SEPARATE_OK && *added ? keep_quieter(rec, &before, c, added)
+	return status == SEPARATE_OK && *added ? keep_quieter(rec, LINES, &before, c, added)
 					       : status;
 }
 

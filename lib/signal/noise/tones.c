@@ -454,31 +454,23 @@ static enum tones_status add_knot(
 	return TONES_OK;
 }
 
-/* Share of the turn since the last knot by which the frequencies follow. */
-static const double FOLLOW = 0.25;
-
-/* Frequencies follow the turn of clear tones, as far as the tones stay apart, and go on as
- * they change (a critically damped loop of second order). */
+/* The frequencies of clear tones become those by which they turned since the last knot, as
+ * far as the tones stay apart. */
 static void follow_turn(struct tones_track *t)
 {
 	const double gap = 2 * M_PI / (double)t->hop;
-	const double share = fmax(FOLLOW, 1.0 / t->knots); /* the first ones mean more */
 	const double *c = t->coefficient[0], *old = t->coefficient[1];
 
 	for (int k = 0; k < t->tones && t->knots > 1; k++) {
 		double a = c[1 + 2 * k], b = c[2 + 2 * k];
 		double turn = atan2(a * old[2 + 2 * k] - b * old[1 + 2 * k],
 			a * old[1 + 2 * k] + b * old[2 + 2 * k]);
-		double dt = t->at - t->before;
-		double rate = t->rate[k] + share * share / 4 * turn / (dt * dt);
-		double omega = t->omega[k] + share * turn / dt + rate * dt;
+		double omega = t->omega[k] + turn / (t->at - t->before);
 		double below = k > 0 ? t->omega[k - 1] : 0;
 		double above = k + 1 < t->tones ? t->omega[k + 1] : M_PI;
 
-		if (t->clear[k] && omega - below > gap && above - omega > gap) {
+		if (t->clear[k] && omega - below > gap && above - omega > gap)
 			t->omega[k] = omega;
-			t->rate[k] = rate;
-		}
 	}
 }
 

@@ -53,8 +53,7 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
 struct tones_track {
 	int tones;
 	int keeps_offset; /* 1: the offset is not subtracted */
-	double omega[TONES_MAX]; /* at the last knot, and their change per sample */
-	double rate[TONES_MAX];
+	double omega[TONES_MAX]; /* at the last knot */
 	long long flat;       /* first sample that still has tones */
 	long long hop, first; /* first: the middle of the first hop */
 	/* Indices at which the last two fits hold: with tones the middles of their
