@@ -289,10 +289,10 @@ static enum num_status track_back(
 	return status;
 }
 
-/* Finds a tone of y1, y2[0 .. n) whose frequency changes so fast that it is no line of the
- * whole: it is the strongest line of most pieces. */
-static enum num_status add_sweep(const double *y1, const double *y2, size_t n,
-	struct calibration *c, int *added)
+/* Finds a tone of y1, y2[0 .. n) whose frequency changes so fast that it is no line of
+ * the whole: it is the strongest line of most pieces. */
+static enum num_status add_sweep(
+	const double *y1, const double *y2, size_t n, struct calibration *c, int *added)
 {
 	enum { SHORTEST = 1024 };
 	enum num_status status = NUM_OK;
@@ -306,8 +306,8 @@ static enum num_status add_sweep(const double *y1, const double *y2, size_t n,
 			double line;
 			int found;
 
-			status = tones_find(y1 + k * m, y2 + k * m, m, NEAR_SIDE, 1, &line,
-				&found);
+			status = tones_find(
+				y1 + k * m, y2 + k * m, m, NEAR_SIDE, 1, &line, &found);
 			if (status == NUM_OK)
 				status = tones_confirm(y1 + k * m, y2 + k * m, m,
 					1 - calibration_lost(c), &found, &line);
@@ -364,8 +364,7 @@ static enum separate_status keep_quieter(const struct record *rec, double share,
 
 /* The line of a sweep has its mean frequency, not that at the beginning of the record:
  * follows the tones to the end and back. */
-static enum separate_status settle_tones(
-	const struct record *rec, struct calibration *c)
+static enum separate_status settle_tones(const struct record *rec, struct calibration *c)
 {
 	const struct calibration before = *c;
 	struct tones_track track;
@@ -383,16 +382,17 @@ static enum separate_status settle_tones(
 }
 
 /* Finds a sweep in rest, 2 n samples, of the record without the tones of c. */
-static enum separate_status search_sweep(const struct record *rec, const double *rest,
-	struct calibration *c, int *added)
+static enum separate_status search_sweep(
+	const struct record *rec, const double *rest, struct calibration *c, int *added)
 {
 	const struct calibration before = *c;
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (add_sweep(rest, rest + rec->n, rec->n, c, added) == NUM_OK)
 		status = *added ? choose_hop(rec, c) : SEPARATE_OK;
-	return status == SEPARATE_OK && *added ? keep_quieter(rec, LINES, &before, c, added)
-					       : status;
+	return status == SEPARATE_OK && *added
+		       ? keep_quieter(rec, LINES, &before, c, added)
+		       : status;
 }
 
 /* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is

@@ -454,8 +454,8 @@ static enum tones_status add_knot(
 	return TONES_OK;
 }
 
-/* The frequencies of clear tones become those by which they turned since the last knot, as
- * far as the tones stay apart. */
+/* The frequencies of clear tones become those by which they turned since the last knot,
+ * as far as the tones stay apart. */
 static void follow_turn(struct tones_track *t)
 {
 	const double gap = 2 * M_PI / (double)t->hop;

@@ -151,9 +151,9 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 /* Share of the range of delays, half of it on either side, that is its edge. */
 static const double EDGE = 0.2;
 
-/* The edge of the range: from |log(transit + delay) - middle| on.  The range is learned to
- * be wider than that of the particles, by a share of their velocities: these are compared
- * by their logarithms. */
+/* The edge of the range: from |log(transit + delay) - middle| on.  The range is learned
+ * to be wider than that of the particles, by a share of their velocities: these are
+ * compared by their logarithms. */
 struct edge {
 	double middle, from;
 };
@@ -179,8 +179,9 @@ static int lies_at_edge(const struct validation *v, const struct evidence *e)
 
 static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
-	return lies_at_edge(v, e) && sqrt(e->var) < EDGE / (1 - EDGE) * find_edge(v).from *
-							     (v->transit + e->delay);
+	return lies_at_edge(v, e) && sqrt(e->var) < EDGE / (1 - EDGE) *
+							    find_edge(v).from *
+							    (v->transit + e->delay);
 }
 
 /* Probability that a particle of the flow lies there by the error of its delay. */
@@ -295,8 +296,8 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
  * variance of 4, and the mean of FEW seldom more than this. */
 static const double WEAKEST = 4;
 
-/* 1 if more than half of the latest rows are doubted, or a tenth more lie at the edge than
- * their errors explain, or what they show at one sensor is noise. */
+/* 1 if more than half of the latest rows are doubted, or a tenth more lie at the edge
+ * than their errors explain, or what they show at one sensor is noise. */
 static int fails(struct validation *v, const struct evidence *e, size_t n)
 {
 	size_t sum = 0, known = 0, rows;
@@ -319,7 +320,8 @@ static int fails(struct validation *v, const struct evidence *e, size_t n)
 		weaker += v->weaker[i];
 	}
 	return (rows >= FEW && (2 * sum > rows ||
-			(edge > 2 && 10 * (edge - chance) > (double)rows && poisson_tail(edge, chance) < RARELY))) ||
+				       (edge > 2 && 10 * (edge - chance) > (double)rows &&
+					       poisson_tail(edge, chance) < RARELY))) ||
 	       (known >= FEW && weaker < WEAKEST * (double)known);
 }
 
