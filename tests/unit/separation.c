@@ -154,14 +154,15 @@ static void test_tones(void)
 		"a train of pulses has no tones");
 }
 
-/* A line that turns by 0.1 rad from knot to knot: straight lines between coefficients,
- * and beyond the first and the last one, leave errors of second order. */
+/* A line that turns by 0.1 rad from knot to knot: its frequency is followed from the
+ * second knot on; before, straight lines between coefficients, and before the first one,
+ * leave errors of second order. */
 static void test_track(void)
 {
 	enum { HOP = 500, PIECE = 700 };
 	static double x[N], y[N];
 	struct tones_track t, pieces;
-	double omega = 2 * acos(-1) * 0.01, turn = 0.1, worst = 0;
+	double omega = 2 * acos(-1) * 0.01, turn = 0.1, early = 0, late = 0;
 
 	for (int i = 0; i < N; i++)
 		x[i] = y[i] = cos((omega + turn / HOP) * i + 0.5);
@@ -169,18 +170,43 @@ static void test_track(void)
 	ok(tones_track_run(&t, x, 0, N, 1) == TONES_OK && t.flat == N,
 		"a line is followed to the end");
 	for (int i = 0; i < N; i++)
-		worst = tap_max(worst, fabs(x[i]));
-	near(worst, 0, 2 * turn * turn,
-		"what is left of it is of second order, at the ends as well");
-	/* The last step may be half as long. */
-	near(tones_track_change(&t), turn * turn / 2,
-		0.75 * turn * turn / 2 / (t.knots - 1), "it changes by its turn");
-	ok(tones_track_left(&t) < pow(turn, 4) && tones_track_left(&t) > 0,
-		"what is left is far less than the change");
+		*(i < 2 * HOP ? &early : &late) =
+			tap_max(i < 2 * HOP ? early : late, fabs(x[i]));
+	near(early, 0, 2 * turn * turn, "what is left of it at first is of second order");
+	/* The error of the frequency is of second order, too, and so is the next turn. */
+	near(late, 0, 5 * pow(turn, 4), "what is left later is of fourth order");
+	near(t.omega[0], omega + turn / HOP, 1e-3 * turn / HOP,
+		"the frequency becomes that of the line");
+	/* Only the first step is a turn, and three quarters as long as a hop, since the
+	 * first knot has half a hop less. */
+	near(tones_track_change(&t), pow(0.75 * turn, 2) / 2 / (t.knots - 1),
+		0.05 * pow(0.75 * turn, 2) / 2 / (t.knots - 1), "it changes by one turn");
 	tones_track_start(&pieces, 1, &omega, 0, HOP);
 	for (int end = PIECE; end < N + PIECE; end += PIECE)
 		tones_track_run(&pieces, y, 0, end < N ? end : N, end >= N);
 	ok(memcmp(x, y, sizeof x) == 0, "the pieces in which it arrives do not matter");
+}
+
+/* A sweep that changes its frequency by b per sample.  Between two knots its phase leaves
+ * that of either by b u^2 / 2 at most, u < HOP, and with weights p and 1 - p by b HOP^2 p
+ * (1 - p) / 2; a fit to two hops shrinks and shifts it by parts of b HOP^2 / 2 as well.
+ */
+static void test_sweep(void)
+{
+	enum { HOP = 100 };
+	static double x[N];
+	struct tones_track t;
+	double omega = 2 * acos(-1) * 0.01, b = omega / N, worst = 0, end;
+
+	for (int i = 0; i < N; i++)
+		x[i] = cos((omega + 0.5 * b * i) * i + 0.5);
+	tones_track_start(&t, 1, &omega, 0, HOP);
+	ok(tones_track_run(&t, x, 0, N, 1) == TONES_OK, "a sweep is followed to the end");
+	for (int i = 0; i < N; i++)
+		worst = tap_max(worst, fabs(x[i]));
+	near(worst, 0, b * HOP * HOP, "what is left of a sweep is of second order");
+	end = omega + b * N;
+	near(t.omega[0], end, 2 * b * HOP, "its frequency is that of the last knots");
 }
 
 /* A tone of cosine c and sine s taken from silence, against direct evaluation.  The
@@ -383,6 +409,7 @@ int main(void)
 	test_masks();
 	test_tones();
 	test_track();
+	test_sweep();
 	test_tone_values();
 	test_small();
 	test_sections();

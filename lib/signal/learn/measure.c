@@ -146,23 +146,24 @@ static enum separate_status look_for_colour(const struct record *rec, struct loo
 /* Share of its frequency by which a line may wander: ten times what mains do. */
 static const double WANDER = 0.02;
 
-/* Takes the tones from omega, and merges those into which wandering may have split one;
- * returns their number, 0 if others are nearer to each other, or to zero, than gap. */
+/* Takes the tones from omega, and merges those nearer to each other than gap, into which
+ * a change of its frequency may have split one; returns their number, 0 if one is nearer
+ * to zero. */
 static int merge_tones(int tones, const double *omega, double gap, double *merged)
 {
-	int count = 0, near = tones > 0 && omega[0] < gap;
+	int count = 0;
 
+	if (tones > 0 && omega[0] < gap)
+		return 0;
 	for (int k = 0, next; k < tones; k = next) {
 		double sum = omega[k];
 
-		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap &&
-				   omega[next] < (1 + WANDER) * omega[k];
+		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap;
 			next++)
 			sum += omega[next];
-		near |= next < tones && omega[next] - omega[next - 1] < gap;
 		merged[count++] = sum / (next - k);
 	}
-	return near ? 0 : count;
+	return count;
 }
 
 /* Level of the record without these tones, which are followed from hop to hop: by the
@@ -268,29 +269,159 @@ static enum num_status add_tones(const double *y1, const double *y2, size_t n, i
  * drifting baseline leaves falls steeply from bin to bin. */
 enum { NEAR_SIDE = 12 };
 
+/* Frequencies at the beginning of y[0 .. n) of tones that have frequencies omega at its
+ * end. */
+static enum num_status track_back(
+	const double *y, size_t n, size_t hop, int tones, double *omega)
+{
+	double *reversed = malloc(n * sizeof *reversed);
+	struct tones_track track;
+	enum num_status status = reversed ? NUM_OK : NUM_MEMORY;
+
+	for (size_t i = 0; reversed && i < n; i++)
+		reversed[i] = y[n - 1 - i];
+	tones_track_start(&track, tones, omega, 0, hop);
+	if (reversed &&
+		tones_track_run(&track, reversed, 0, (long long)n, 1) == TONES_MEMORY)
+		status = NUM_MEMORY;
+	memcpy(omega, track.omega, (size_t)tones * sizeof *omega);
+	free(reversed);
+	return status;
+}
+
+/* Finds a tone of y1, y2[0 .. n) whose frequency changes so fast that it is no line of
+ * the whole: it is the strongest line of most pieces. */
+static enum num_status add_sweep(
+	const double *y1, const double *y2, size_t n, struct calibration *c, int *added)
+{
+	enum { SHORTEST = 1024 };
+	enum num_status status = NUM_OK;
+
+	*added = 0;
+	for (size_t m = n / 4; m >= SHORTEST && !*added && c->tones < TONES_MAX; m /= 2) {
+		double omega = 0;
+		size_t with = 0, pieces = n / m, first = 0;
+
+		for (size_t k = 0; k < pieces && status == NUM_OK; k++) {
+			double line;
+			int found;
+
+			status = tones_find(
+				y1 + k * m, y2 + k * m, m, NEAR_SIDE, 1, &line, &found);
+			if (status == NUM_OK)
+				status = tones_confirm(y1 + k * m, y2 + k * m, m,
+					1 - calibration_lost(c), &found, &line);
+			if (status == NUM_OK && found && with++ == 0) {
+				omega = line;
+				first = k;
+			}
+		}
+		if (status != NUM_OK)
+			return status;
+		if (2 * with <= pieces)
+			continue;
+		status = track_back(y1, first * m + m / 2, m / 4, 1, &omega);
+		c->omega[c->tones++] = omega;
+		sort_numbers(c->omega, (size_t)c->tones);
+		*added = 1;
+	}
+	return status;
+}
+
+/* Levels, see level_without_tones(), with the tones of c and with those of before, at the
+ * hop of c; INFINITY if that does not resolve them. */
+static enum separate_status compare_levels(const struct record *rec,
+	const struct calibration *before, const struct calibration *c, double level[2])
+{
+	struct calibration same_hop = *before;
+
+	same_hop.tone_hop = c->tone_hop;
+	for (int k = 0; k < 2; k++) {
+		enum separate_status status =
+			level_without_tones(rec, k ? &same_hop : c, &level[k]);
+
+		if (status == SEPARATE_MEMORY)
+			return status;
+		if (status != SEPARATE_OK)
+			level[k] = INFINITY;
+	}
+	return SEPARATE_OK;
+}
+
+/* Keeps the tones of c rather than those of before if the record is quieter without them,
+ * by more than this share of the noise; *kept: 1 if so. */
+static enum separate_status keep_quieter(const struct record *rec, double share,
+	const struct calibration *before, struct calibration *c, int *kept)
+{
+	double level[2];
+	enum separate_status status = compare_levels(rec, before, c, level);
+
+	*kept = status == SEPARATE_OK && (1 + share) * level[0] < level[1];
+	if (!*kept)
+		*c = *before;
+	return status;
+}
+
+/* The line of a sweep has its mean frequency, not that at the beginning of the record:
+ * follows the tones to the end and back. */
+static enum separate_status settle_tones(const struct record *rec, struct calibration *c)
+{
+	const struct calibration before = *c;
+	struct tones_track track;
+	enum separate_status status;
+	int kept;
+
+	memcpy(rec->work, rec->y1, rec->n * sizeof *rec->work);
+	status = take_tones(c, rec->work, rec->n, &track);
+	if (status != SEPARATE_OK)
+		return status;
+	memcpy(c->omega, track.omega, sizeof c->omega);
+	if (track_back(rec->y1, rec->n, c->tone_hop, c->tones, c->omega) != NUM_OK)
+		return SEPARATE_MEMORY;
+	return keep_quieter(rec, 0, &before, c, &kept);
+}
+
+/* Finds a sweep in rest, 2 n samples, of the record without the tones of c. */
+static enum separate_status search_sweep(
+	const struct record *rec, const double *rest, struct calibration *c, int *added)
+{
+	const struct calibration before = *c;
+	enum separate_status status = SEPARATE_MEMORY;
+
+	if (add_sweep(rest, rest + rec->n, rec->n, c, added) == NUM_OK)
+		status = *added ? choose_hop(rec, c) : SEPARATE_OK;
+	return status == SEPARATE_OK && *added
+		       ? keep_quieter(rec, LINES, &before, c, added)
+		       : status;
+}
+
 /* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
- * a few times the usual sample, which includes the lines. */
+ * a few times the usual sample, which includes the lines; then sweeps. */
 static enum separate_status search_tones(const struct record *rec, struct calibration *c)
 {
 	size_t n = rec->n;
 	double *rest = malloc(2 * n * sizeof *rest);
-	int added = 0;
-	enum separate_status status = SEPARATE_OK;
+	int added = 1, side = TONES_SIDE;
+	enum separate_status status = rest ? SEPARATE_OK : SEPARATE_MEMORY;
 
-	if (!rest || add_tones(rec->y1, rec->y2, n, TONES_SIDE, c, &added) != NUM_OK)
-		status = SEPARATE_MEMORY;
 	while (status == SEPARATE_OK && added > 0) {
 		struct tones_track track;
 
-		status = choose_hop(rec, c);
 		for (int k = 0; k < 2 && status == SEPARATE_OK; k++) {
 			memcpy(rest + (size_t)k * n, k ? rec->y2 : rec->y1,
 				n * sizeof *rest);
-			status = take_tones(c, rest + (size_t)k * n, n, &track);
+			if (c->tones > 0)
+				status = take_tones(c, rest + (size_t)k * n, n, &track);
 		}
 		if (status == SEPARATE_OK &&
-			add_tones(rest, rest + n, n, NEAR_SIDE, c, &added) != NUM_OK)
+			add_tones(rest, rest + n, n, side, c, &added) != NUM_OK)
 			status = SEPARATE_MEMORY;
+		if (status == SEPARATE_OK)
+			status = added ? choose_hop(rec, c)
+				       : search_sweep(rec, rest, c, &added);
+		if (status == SEPARATE_OK && added)
+			status = settle_tones(rec, c);
+		side = NEAR_SIDE;
 	}
 	free(rest);
 	return status;

@@ -334,6 +334,9 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	return status;
 }
 
+/* What it has to exceed for a tone to be there: noise does with probability 2e-9. */
+static const double CLEAR = 40;
+
 /* Power of tone k relative to that from noise: chi-square with two degrees of freedom. */
 static double significance(
 	const double *coefficient, const double *variance, double deviation, int k)
@@ -357,8 +360,8 @@ enum num_status tones_confirm(const double *y1, const double *y2, size_t n, doub
 	if (*tones == 0 || status != TONES_OK)
 		return status == TONES_MEMORY ? NUM_MEMORY : NUM_OK;
 	for (int k = 0; k < *tones; k++)
-		if (significance(c[0], v[0], d[0], k) * band > 40 ||
-			significance(c[1], v[1], d[1], k) * band > 40)
+		if (significance(c[0], v[0], d[0], k) * band > CLEAR ||
+			significance(c[1], v[1], d[1], k) * band > CLEAR)
 			omega[kept++] = omega[k];
 	*tones = kept;
 	return NUM_OK;
@@ -401,17 +404,34 @@ void tones_track_start(struct tones_track *t, int tones, const double *omega,
 	memcpy(t->omega, omega, (size_t)tones * sizeof *omega);
 }
 
-/* Moves on by a knot, whose coefficients are those of x[0 .. to - from) from index from
- * on. */
+/* Coefficients of the tones counted from dt samples later. */
+static void turn_on(const struct tones_track *t, double dt, double *c)
+{
+	for (int k = 0; k < t->tones; k++) {
+		double co, si, a = c[1 + 2 * k], b = c[2 + 2 * k];
+
+		cosine_sine(t->omega[k], dt, &co, &si);
+		c[1 + 2 * k] = a * co + b * si;
+		c[2 + 2 * k] = b * co - a * si;
+	}
+}
+
+/* Moves on by a knot at index at, whose coefficients are those of x[0 .. to - from) from
+ * index from on. */
 static enum tones_status add_knot(
-	struct tones_track *t, const double *x, long long from, long long to)
+	struct tones_track *t, const double *x, long long from, long long to, double at)
 {
 	double *c = t->coefficient[0], fresh[1 + 2 * TONES_MAX];
-	enum tones_status status = tones_fit(x, (size_t)(to - from), (double)from,
-		t->tones, t->omega, fresh, NULL, NULL);
+	double variance[1 + 2 * TONES_MAX], deviation;
+	enum tones_status status = tones_fit(x, (size_t)(to - from), (double)from - at,
+		t->tones, t->omega, fresh, &deviation, variance);
 
 	if (status == TONES_MEMORY)
 		return status;
+	for (int k = 0; k < 2 && t->knots > 0; k++)
+		turn_on(t, at - t->at, t->coefficient[k]);
+	t->before = t->at;
+	t->at = at;
 	if (t->keeps_offset)
 		fresh[0] = 0;
 	t->fits += status == TONES_OK;
@@ -420,6 +440,9 @@ static enum tones_status add_knot(
 	memmove(t->coefficient[1], c, 2 * sizeof fresh);
 	memcpy(c, fresh, sizeof fresh);
 	t->knots++;
+	for (int k = 0; k < t->tones; k++)
+		t->clear[k] = status == TONES_OK &&
+			      significance(c, variance, deviation, k) > CLEAR;
 	for (int k = 1; k <= 2 * t->tones; k++) {
 		double step = c[k] - t->coefficient[1][k];
 		double bend = step - t->coefficient[1][k] + t->coefficient[2][k];
@@ -429,6 +452,26 @@ static enum tones_status add_knot(
 		t->bend += t->knots > 2 ? bend * bend : 0;
 	}
 	return TONES_OK;
+}
+
+/* The frequencies of clear tones become those by which they turned since the last knot,
+ * as far as the tones stay apart. */
+static void follow_turn(struct tones_track *t)
+{
+	const double gap = 2 * M_PI / (double)t->hop;
+	const double *c = t->coefficient[0], *old = t->coefficient[1];
+
+	for (int k = 0; k < t->tones && t->knots > 1; k++) {
+		double a = c[1 + 2 * k], b = c[2 + 2 * k];
+		double turn = atan2(a * old[2 + 2 * k] - b * old[1 + 2 * k],
+			a * old[1 + 2 * k] + b * old[2 + 2 * k]);
+		double omega = t->omega[k] + turn / (t->at - t->before);
+		double below = k > 0 ? t->omega[k - 1] : 0;
+		double above = k + 1 < t->tones ? t->omega[k + 1] : M_PI;
+
+		if (t->clear[k] && omega - below > gap && above - omega > gap)
+			t->omega[k] = omega;
+	}
 }
 
 enum tones_status tones_track_run(
@@ -443,15 +486,16 @@ enum tones_status tones_track_run(
 		if (to > end) /* the last one describes the rest */
 			to = until = end;
 		from = from > t->flat ? from : t->flat;
-		if (add_knot(t, x + (from - begin), from, to) == TONES_MEMORY)
+		follow_turn(t);
+		if (add_knot(t, x + (from - begin), from, to,
+			    t->tones ? 0.5 * (double)(from + to) : (double)middle) ==
+			TONES_MEMORY)
 			return TONES_MEMORY;
-		t->before = t->at;
-		t->at = t->tones ? 0.5 * (double)(from + to) : (double)middle;
 		if (t->knots == 1 && until < end)
 			continue; /* which way it changes is not known yet */
 		tones_remove(x + (t->flat - begin), (size_t)(until - t->flat),
-			(double)t->flat, t->tones, t->omega, t->before,
-			t->coefficient[t->knots > 1], t->at, t->coefficient[0]);
+			(double)t->flat - t->at, t->tones, t->omega, t->before - t->at,
+			t->coefficient[t->knots > 1], 0, t->coefficient[0]);
 		t->flat = until;
 	}
 	return TONES_OK;

@@ -53,7 +53,7 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
 struct tones_track {
 	int tones;
 	int keeps_offset; /* 1: the offset is not subtracted */
-	double omega[TONES_MAX];
+	double omega[TONES_MAX]; /* at the last knot */
 	long long flat;       /* first sample that still has tones */
 	long long hop, first; /* first: the middle of the first hop */
 	/* Indices at which the last two fits hold: with tones the middles of their
@@ -61,7 +61,9 @@ struct tones_track {
 	double at, before;
 	int knots; /* so far; 0: nothing is known */
 	int fits;  /* of them, those whose samples resolve the tones */
-	double coefficient[3][1 + 2 * TONES_MAX]; /* at the last three knots */
+	/* At the last three knots, with indices counted from the last one. */
+	double coefficient[3][1 + 2 * TONES_MAX];
+	int clear[TONES_MAX]; /* at the last one: 1: the tone is above the noise */
 	/* Sums over the knots of the power of each tone, and of the squares of the first
 	 * and second differences of all cosines and sines. */
 	double power[TONES_MAX], step, bend;
