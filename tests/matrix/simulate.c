@@ -45,20 +45,22 @@ static struct option {
 	{ "wall", 0.9 },                 /* no particle beyond this share of the radius */
 	{ "smallest", 80e-6 },           /* diameters, m */
 	{ "largest", 120e-6 },           /* ... */
-	{ "volts", 1 },     /* peak of 100 um at mean velocity, before the filter */
-	{ "gain", 0.909 },  /* of sensor 2 */
-	{ "width", 1 },     /* of its coil, over that of sensor 1 */
-	{ "snr", 30 },      /* dB: volts over the noise of a sample */
-	{ "negative", 0 },  /* share of particles with reversed pulses */
-	{ "highpass", 0 },  /* corner of a high-pass, Hz; 0: none */
-	{ "orders", 1 },    /* poles of the high-pass */
-	{ "lowpass", 0 },   /* corner of a low-pass, Hz */
-	{ "poles", 1 },     /* of the low-pass */
-	{ "through", 1 },   /* 1: the noise passes both filters, too */
-	{ "colour", 0 },    /* corner of the noise itself, Hz */
-	{ "common", 0 },    /* correlation of the noise of both sensors */
-	{ "hum", 0 },       /* amplitude of 50 Hz, with harmonics 3 and 5, V */
-	{ "wander", 0 },    /* rms of its frequency, Hz */
+	{ "volts", 1 },    /* peak of 100 um at mean velocity, before the filter */
+	{ "gain", 0.909 }, /* of sensor 2 */
+	{ "width", 1 },    /* of its coil, over that of sensor 1 */
+	{ "snr", 30 },     /* dB: volts over the noise of a sample */
+	{ "negative", 0 }, /* share of particles with reversed pulses */
+	{ "highpass", 0 }, /* corner of a high-pass, Hz; 0: none */
+	{ "orders", 1 },   /* poles of the high-pass */
+	{ "lowpass", 0 },  /* corner of a low-pass, Hz */
+	{ "poles", 1 },    /* of the low-pass */
+	{ "through", 1 },  /* 1: the noise passes both filters, too */
+	{ "colour", 0 },   /* corner of the noise itself, Hz */
+	{ "common", 0 },   /* correlation of the noise of both sensors */
+	{ "hum", 0 },      /* amplitude of 50 Hz, with harmonics 3 and 5, V */
+	{ "wander", 0 },   /* rms of its frequency, Hz */
+	{ "sweep", 0 },    /* amplitude of a tone that sweeps, V, ... */
+	{ "sweepfrom", 100 }, { "sweepto", 150 }, /* ... between these frequencies, Hz */
 	{ "baseline", 0 },  /* random walk, V per root of a second */
 	{ "flowdrift", 0 }, /* change of the velocity over the record */
 	{ "jump", 1 },      /* factor of the velocity from the middle of the record on */
@@ -646,6 +648,22 @@ static void add_hum(double *x, long N)
 	}
 }
 
+/* A tone whose frequency changes linearly over the record. */
+static void add_sweep(double *x, long N)
+{
+	double rate = get("rate"), from = get("sweepfrom"),
+	       change = get("sweepto") - from;
+	double level = get("sweep"), first = level > 0 ? uniform() : 0, shift = 0.3;
+
+	for (long i = 0; i < N && level > 0; i++) {
+		double t = (double)i / rate;
+		double turn = (from + change * (double)i / (double)N / 2) * t + first;
+
+		for (int c = 0; c < 2; c++)
+			x[2 * i + c] += level * sin(2 * M_PI * (turn + c * shift));
+	}
+}
+
 static void mix_channels(double *x, long N)
 {
 	double share = get("crosstalk");
@@ -977,6 +995,7 @@ int main(int argc, char **argv)
 		draw_event(&events[i], x, N);
 	add_noise(x, N);
 	add_hum(x, N);
+	add_sweep(x, N);
 	mix_channels(x, N);
 	spoil(x, N, masked);
 	for (size_t i = 0; i < count; i++)

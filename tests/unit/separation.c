@@ -209,43 +209,6 @@ static void test_sweep(void)
 	near(t.omega[0], end, 2 * b * HOP, "its frequency is that of the last knots");
 }
 
-/* A tone of cosine c and sine s taken from silence, against direct evaluation.  The
- * frequency has so few digits that it can be cut in two whose products with the index are
- * exact: the error of the reference is that of cos() and sin(). */
-static void test_tone_values(void)
-{
-	enum { LONG = 1000 };
-	static const double start[] = { 0, 12345, 4e6 + 7, 3e9 + 1, 1e10 + 3 };
-	static const double turns[] = { 1e-5, 0.00503, 0.123456789, 0.4999 };
-
-	for (int k = 0; k < 5; k++) {
-		double worst = 0;
-
-		for (int l = 0; l < 4; l++) {
-			double omega = rint(2 * acos(-1) * turns[l] * 0x1p32) * 0x1p-32;
-			double coarse = rint(omega * 0x1p16) * 0x1p-16,
-			       fine = omega - coarse, c[3] = { 0, 1, 0 },
-			       s[3] = { 0, 0, 1 };
-			double x[LONG] = { 0 }, y[LONG] = { 0 };
-
-			tones_remove(x, LONG, start[k], 1, &omega, 0, c, 1, c);
-			tones_remove(y, LONG, start[k], 1, &omega, 0, s, 1, s);
-			for (int i = 0; i < LONG; i++) {
-				double p = coarse * (start[k] + i),
-				       q = fine * (start[k] + i);
-
-				worst = tap_max(worst,
-					fabs(x[i] + cos(p) * cos(q) - sin(p) * sin(q)));
-				worst = tap_max(worst,
-					fabs(y[i] + sin(p) * cos(q) + cos(p) * sin(q)));
-			}
-		}
-		/* what tones.h states; half of it may be the reference's */
-		ok(worst <= 1e-15, "tones at index %.0f are right within %.1e", start[k],
-			worst);
-	}
-}
-
 static void test_small(void)
 {
 	static double x[N], work[N], r[101], silence[3000];
@@ -410,7 +373,6 @@ int main(void)
 	test_tones();
 	test_track();
 	test_sweep();
-	test_tone_values();
 	test_small();
 	test_sections();
 	test_width();

@@ -2,9 +2,9 @@
  *
  * Amplitude and phase of every line are found by least squares over a window of two hops
  * that moves on by one, and run linearly from the middle of one window to that of the
- * next; so they may change slowly, and pulses much shorter than the window hardly
- * affect them (tones.h also excludes outliers).  A line of constant amplitude is removed
- * to rounding.  The output lags the input by at most two hops.
+ * next; so they may change slowly, as may the frequency, and pulses much shorter than the
+ * window hardly affect them (tones.h also excludes outliers).  A line of constant
+ * amplitude is removed to rounding.  The output lags the input by at most two hops.
  */
 #ifndef SIGNAL_LINES_H
 #define SIGNAL_LINES_H

@@ -116,17 +116,6 @@ struct basis {
 	double term[TERMS_MAX][RUN], gram[TERMS_MAX][TERMS_MAX];
 };
 
-/* Cosine and sine of omega t.  The product is computed with twice the digits, since its
- * last digits matter for large t. */
-static void cosine_sine(double omega, double t, double *c, double *s)
-{
-	double phase = omega * t, rest = fma(omega, t, -phase);
-	double cp = cos(phase), sp = sin(phase);
-
-	*c = cp - rest * (sp + 0.5 * rest * cp);
-	*s = sp + rest * (cp - 0.5 * rest * sp);
-}
-
 static void make_basis(struct basis *b, int tones, const double *omega)
 {
 	b->tones = tones;
@@ -134,9 +123,10 @@ static void make_basis(struct basis *b, int tones, const double *omega)
 	memcpy(b->omega, omega, sizeof(double) * (size_t)tones);
 	for (int i = 0; i < RUN; i++) {
 		b->term[0][i] = 1;
-		for (int k = 0; k < tones; k++)
-			cosine_sine(omega[k], i, &b->term[1 + 2 * k][i],
-				&b->term[2 + 2 * k][i]);
+		for (int k = 0; k < tones; k++) {
+			b->term[1 + 2 * k][i] = cos(omega[k] * i);
+			b->term[2 + 2 * k][i] = sin(omega[k] * i);
+		}
 	}
 	for (int k = 0; k < b->terms; k++)
 		for (int l = 0; l < b->terms; l++)
@@ -150,9 +140,8 @@ static void make_terms(const struct basis *b, double t, double term[][RUN])
 	for (int k = 0; k < b->tones; k++) {
 		const double *c0 = b->term[1 + 2 * k], *s0 = b->term[2 + 2 * k];
 		double *c = term[1 + 2 * k], *s = term[2 + 2 * k];
-		double ct, st;
+		double ct = cos(b->omega[k] * t), st = sin(b->omega[k] * t);
 
-		cosine_sine(b->omega[k], t, &ct, &st);
 		for (int i = 0; i < RUN; i++) {
 			c[i] = ct * c0[i] - st * s0[i];
 			s[i] = st * c0[i] + ct * s0[i];
@@ -408,9 +397,9 @@ void tones_track_start(struct tones_track *t, int tones, const double *omega,
 static void turn_on(const struct tones_track *t, double dt, double *c)
 {
 	for (int k = 0; k < t->tones; k++) {
-		double co, si, a = c[1 + 2 * k], b = c[2 + 2 * k];
+		double co = cos(t->omega[k] * dt), si = sin(t->omega[k] * dt);
+		double a = c[1 + 2 * k], b = c[2 + 2 * k];
 
-		cosine_sine(t->omega[k], dt, &co, &si);
 		c[1 + 2 * k] = a * co + b * si;
 		c[2 + 2 * k] = b * co - a * si;
 	}

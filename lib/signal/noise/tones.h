@@ -1,9 +1,7 @@
-/* tones.h - steady interference: mains, their harmonics, the pump
+/* tones.h - interference by lines: mains, their harmonics, the pump
  *
  * A tone is a frequency; its amplitude and phase are found by least squares over a
- * stretch of record, together with the others and a constant.  Cosines and sines are
- * exact to 1e-15 up to index 1e10 and beyond; most of them are computed by the addition
- * theorem.
+ * stretch of record, together with the others and a constant.
  */
 #ifndef SIGNAL_TONES_H
 #define SIGNAL_TONES_H
@@ -49,13 +47,14 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
 
 /* Tones followed through a record: their coefficients are fitted around the middle of
  * every hop, to a hop on either side, and change linearly from one of these knots to the
- * next, beyond the first and the last one as well.  The offset is constant there. */
+ * next, beyond the first and the last one as well.  The offset is constant there.  The
+ * frequency of a tone is that by which its phase turned between the last two knots. */
 struct tones_track {
 	int tones;
-	int keeps_offset; /* 1: the offset is not subtracted */
+	int keeps_offset;        /* 1: the offset is not subtracted */
 	double omega[TONES_MAX]; /* at the last knot */
-	long long flat;       /* first sample that still has tones */
-	long long hop, first; /* first: the middle of the first hop */
+	long long flat;          /* first sample that still has tones */
+	long long hop, first;    /* first: the middle of the first hop */
 	/* Indices at which the last two fits hold: with tones the middles of their
 	 * samples, of which there are fewer at the ends. */
 	double at, before;

@@ -15,7 +15,6 @@ struct delay {
 struct validation {
 	struct delay delay[EVIDENCE_KEPT];
 	unsigned char doubted[EVIDENCE_KEPT], at_edge[EVIDENCE_KEPT];
-	double chance[EVIDENCE_KEPT]; /* of lying there */
 	double weaker[EVIDENCE_KEPT];
 	size_t delays, rows; /* taken in so far */
 	/* Range of delays; transit 0: not known. */
@@ -69,18 +68,6 @@ static int fits(const struct evidence *e, size_t m)
 		if (!e[i].fits)
 			return 0;
 	return 1;
-}
-
-/* 1 - the probability that a Poisson number is less than count. */
-static double poisson_tail(int count, double mean)
-{
-	double term = exp(-mean), tail = 1;
-
-	for (int k = 0; k < count; k++) {
-		tail -= term;
-		term *= mean / (k + 1);
-	}
-	return tail;
 }
 
 /* --- the flow */
@@ -151,51 +138,19 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 /* Share of the range of delays, half of it on either side, that is its edge. */
 static const double EDGE = 0.2;
 
-/* The edge of the range: from |log(transit + delay) - middle| on.  The range is learned
- * to be wider than that of the particles, by a share of their velocities: these are
- * compared by their logarithms. */
-struct edge {
-	double middle, from;
-};
-
-static struct edge find_edge(const struct validation *v)
+/* 1 if the delay lies at the edge, and its error is smaller than that.  The range is
+ * learned to be wider than that of the particles, by a share of their velocities: these
+ * are compared by their logarithms. */
+static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
-	double most = log(v->transit + v->most), least = log(v->transit + v->least);
-
-	return (struct edge){ 0.5 * (most + least), (1 - EDGE) * 0.5 * (most - least) };
-}
-
-/* 1 if the delay lies at the edge.  One whose error would fit in beyond the edge is then
- * none of the flow. */
-static int lies_at_edge(const struct validation *v, const struct evidence *e)
-{
-	struct edge edge;
+	double half, middle, whole = v->transit + e->delay;
 
 	if (!(v->transit > 0) || !(e->var > 0))
 		return 0;
-	edge = find_edge(v);
-	return fabs(log(v->transit + e->delay) - edge.middle) > edge.from;
-}
-
-static int is_at_edge(const struct validation *v, const struct evidence *e)
-{
-	return lies_at_edge(v, e) && sqrt(e->var) < EDGE / (1 - EDGE) *
-							    find_edge(v).from *
-							    (v->transit + e->delay);
-}
-
-/* Probability that a particle of the flow lies there by the error of its delay. */
-static double chance_of_edge(const struct validation *v, const struct evidence *e)
-{
-	struct edge edge;
-	double off, error;
-
-	if (!(v->transit > 0) || !(e->var > 0) || isinf(v->flow.var))
-		return 0;
-	edge = find_edge(v);
-	off = log(v->transit + v->flow.mean) - edge.middle;
-	error = sqrt(2 * (v->flow.margin + e->var)) / (v->transit + v->flow.mean);
-	return 0.5 * (erfc((edge.from - off) / error) + erfc((edge.from + off) / error));
+	half = 0.5 * log((v->transit + v->most) / (v->transit + v->least));
+	middle = 0.5 * log((v->transit + v->most) * (v->transit + v->least));
+	return sqrt(e->var) < EDGE * half * whole &&
+	       fabs(log(whole) - middle) > (1 - EDGE) * half;
 }
 
 double validation_half(const struct validation *v)
@@ -226,6 +181,18 @@ static double weak_place(
 /* Probability that chance puts as many weak pulses at one place: at most one correct
  * group in ten thousand is doubted. */
 static const double RARELY = 1e-4;
+
+/* 1 - the probability that a Poisson number is less than count. */
+static double poisson_tail(int count, double mean)
+{
+	double term = exp(-mean), tail = 1;
+
+	for (int k = 0; k < count; k++) {
+		tail -= term;
+		term *= mean / (k + 1);
+	}
+	return tail;
+}
 
 /* 1 if a tenth of the groups, of the last ones in a long record, have a weak pulse at
  * this place, more than chance explains: particles are as frequent there as farther off,
@@ -267,22 +234,9 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_flow(v);
 }
 
-/* 1 if more pulses of a group lie at the edge than their errors explain. */
-static int gathers_at_edge(const struct validation *v, const struct evidence *e, size_t m)
-{
-	double chance = 0;
-	int edge = 0;
-
-	for (size_t i = 0; i < m; i++) {
-		edge += lies_at_edge(v, &e[i]);
-		chance += chance_of_edge(v, &e[i]);
-	}
-	return edge > 2 && poisson_tail(edge, chance) < RARELY;
-}
-
 static void test_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m) || gathers_at_edge(v, e, m);
+	int impossible = is_impossible(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
@@ -296,32 +250,27 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
  * variance of 4, and the mean of FEW seldom more than this. */
 static const double WEAKEST = 4;
 
-/* 1 if more than half of the latest rows are doubted, or a tenth more lie at the edge
- * than their errors explain, or what they show at one sensor is noise. */
+/* 1 if more than half of the latest rows are doubted, or more than a tenth lie at the
+ * edge, or what they show at one sensor is noise. */
 static int fails(struct validation *v, const struct evidence *e, size_t n)
 {
-	size_t sum = 0, known = 0, rows;
-	double weaker = 0, chance = 0;
-	int edge = 0;
+	size_t sum = 0, edge = 0, known = 0, rows;
+	double weaker = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		v->doubted[v->rows % EVIDENCE_KEPT] = (unsigned char)e[i].doubted;
 		v->weaker[v->rows % EVIDENCE_KEPT] = e[i].weaker;
-		v->chance[v->rows % EVIDENCE_KEPT] = chance_of_edge(v, &e[i]);
 		v->at_edge[v->rows++ % EVIDENCE_KEPT] =
-			(unsigned char)lies_at_edge(v, &e[i]);
+			(unsigned char)is_at_edge(v, &e[i]);
 	}
 	rows = evidence_kept(v->rows);
 	for (size_t i = 0; i < rows; i++) {
 		sum += v->doubted[i];
 		edge += v->at_edge[i];
-		chance += v->chance[i];
 		known += v->weaker[i] > 0;
 		weaker += v->weaker[i];
 	}
-	return (rows >= FEW && (2 * sum > rows ||
-				       (edge > 2 && 10 * (edge - chance) > (double)rows &&
-					       poisson_tail(edge, chance) < RARELY))) ||
+	return (rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows))) ||
 	       (known >= FEW && weaker < WEAKEST * (double)known);
 }
 
