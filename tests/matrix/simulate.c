@@ -45,21 +45,22 @@ static struct option {
 	{ "wall", 0.9 },                 /* no particle beyond this share of the radius */
 	{ "smallest", 80e-6 },           /* diameters, m */
 	{ "largest", 120e-6 },           /* ... */
-	{ "volts", 1 },     /* peak of 100 um at mean velocity, before the filter */
-	{ "gain", 0.909 },  /* of sensor 2 */
-	{ "width", 1 },     /* of its coil, over that of sensor 1 */
-	{ "snr", 30 },      /* dB: volts over the noise of a sample */
-	{ "negative", 0 },  /* share of particles with reversed pulses */
-	{ "highpass", 0 },  /* corner of a high-pass, Hz; 0: none */
-	{ "orders", 1 },    /* poles of the high-pass */
-	{ "lowpass", 0 },   /* corner of a low-pass, Hz */
-	{ "poles", 1 },     /* of the low-pass */
-	{ "through", 1 },   /* 1: the noise passes both filters, too */
-	{ "colour", 0 },    /* corner of the noise itself, Hz */
-	{ "common", 0 },    /* correlation of the noise of both sensors */
-	{ "hum", 0 },       /* amplitude of 50 Hz, with harmonics 3 and 5, V */
-	{ "wander", 0 },    /* rms of its frequency, Hz */
-	{ "baseline", 0 },  /* random walk, V per root of a second */
+	{ "vary", 0 },     /* share within which widths differ from those of velocities */
+	{ "volts", 1 },    /* peak of 100 um at mean velocity, before the filter */
+	{ "gain", 0.909 }, /* of sensor 2 */
+	{ "width", 1 },    /* of its coil, over that of sensor 1 */
+	{ "snr", 30 },     /* dB: volts over the noise of a sample */
+	{ "negative", 0 }, /* share of particles with reversed pulses */
+	{ "highpass", 0 }, /* corner of a high-pass, Hz; 0: none */
+	{ "orders", 1 },   /* poles of the high-pass */
+	{ "lowpass", 0 },  /* corner of a low-pass, Hz */
+	{ "poles", 1 },    /* of the low-pass */
+	{ "through", 1 },  /* 1: the noise passes both filters, too */
+	{ "colour", 0 },   /* corner of the noise itself, Hz */
+	{ "common", 0 },   /* correlation of the noise of both sensors */
+	{ "hum", 0 },      /* amplitude of 50 Hz, with harmonics 3 and 5, V */
+	{ "wander", 0 },   /* rms of its frequency, Hz */
+	{ "baseline", 0 }, /* random walk, V per root of a second */
 	{ "flowdrift", 0 }, /* change of the velocity over the record */
 	{ "jump", 1 },      /* factor of the velocity from the middle of the record on */
 	{ "gaindrift", 0 }, /* change of the gain of sensor 2 */
@@ -321,6 +322,8 @@ static void add_particle(double t)
 	e->shape = find_shape(shape_name);
 	e->diameter = d;
 	e->duration = get("duration") / v;
+	if (get("vary") > 0)
+		e->duration *= 1 + get("vary") * between(-1, 1);
 	e->time[0] = t;
 	e->time[1] = t + get("transit") / v;
 	e->level[0] = get("volts") * v * pow(d / 100e-6, 3);
