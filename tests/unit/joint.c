@@ -628,6 +628,35 @@ static void test_widths(struct joint *j, const struct joint_scene *tied)
 	near(s.misfit, 0.001, 0, "and the misfit remains");
 }
 
+/* Two pulses that overlap, one wider and one narrower by 1 % than those of their
+ * velocities: both widths are found to their second order. */
+static void test_width_pair(struct joint *j, const struct joint_scene *tied)
+{
+	const struct joint_pulse truth[2] = { { .t = 280.4, .delta = 3, .a = 31.62 },
+		{ .t = 280.4 + 0.7 * tied->duration, .delta = 4, .a = 25 } };
+	const double share[2] = { 0.01, -0.01 };
+	struct joint_pulse found[2] = { truth[0], truth[1] };
+	struct joint_width width[2];
+	struct joint_result r;
+	static double y[2][N];
+	double explained = 0;
+	size_t m;
+
+	memset(y, 0, sizeof y);
+	for (int i = 0; i < 2; i++) {
+		struct joint_scene other = *tied;
+
+		other.duration *= exp(share[i]);
+		joint_add(&other, &truth[i], 1, y[0], y[1], N);
+	}
+	joint_refine(j, tied, y[0], y[1], N, found, 2, &r);
+	m = joint_widths(j, width, &explained);
+	ok(m == 2, "the widths of %zu pulses that overlap are known", m);
+	for (size_t i = 0; i < m; i++)
+		near(width[i].share, share[i], 1e-3, "and found");
+	near(explained, r.chi2, 0.01 * r.chi2, "they explain all that is left");
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -652,6 +681,7 @@ int main(void)
 	test_exchange(j, &s);
 	test_laminar(j, &s);
 	test_widths(j, &s);
+	test_width_pair(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

@@ -5,13 +5,15 @@
 #include <string.h>
 
 /* Inner products within channel c of the derivatives of pulses i and k: u of the former,
- * and v of the latter.  What tones and baseline take of a width is not subtracted: the
- * widths seem to be known better, and deviate by fewer of their errors. */
+ * and v of the latter, less what tones and baseline take of them. */
 static double inner(const struct joint *j, int c, int i, int u, int k, int v)
 {
 	const struct column *x = &j->col[i][c], *y = &j->col[k][c];
+	const double *of = j->bq + c * j->basis;
+	const int nb = 2 * j->basis;
 
-	return dot_within(x->d[u], x->n, y->d[v], y->n, y->first - x->first);
+	return dot_within(x->d[u], x->n, y->d[v], y->n, x->first - y->first) -
+	       dot(of + (PAR * i + u) * nb, of + (PAR * k + v) * nb, (size_t)j->basis);
 }
 
 /* The derivative of pulse i on channel c by its width, over that by its arrival at the
