@@ -164,17 +164,17 @@ double joint_work(const struct joint *joint);
 void joint_gain_error(const struct joint *joint, double *share, double *se);
 
 /* By which share a pulse is wider than one of its velocity, whatever the prior of widths,
- * and the standard error of this; left: the share of its energy that one wider by share
- * leaves, over share^2. */
+ * and the standard error of this; at: its arrival; left: the share of its energy that one
+ * wider by share leaves, over share^2. */
 struct joint_width {
-	double share, se, left;
+	double at, share, se, left;
 };
 /* Those of the pulses of the last fit; explained: by how much they reduce its chi-square.
  * Returns the number of pulses; 0: they are not known. */
 size_t joint_widths(struct joint *joint, struct joint_width *width, double *explained);
 
-/* Standard deviation of the widths of n pulses beside that of their errors; 0 unless
- * noise rarely explains them. */
+/* Standard deviation of the widths of n pulses from a straight line in time, beside that
+ * of their errors; 0 unless noise rarely explains them. */
 double joint_width_scatter(const struct joint_width *width, size_t n);
 
 /* Sets widths to the scatter of those of n pulses, and misfit to at least what three

@@ -113,6 +113,7 @@ size_t joint_widths(struct joint *j, struct joint_width *width, double *explaine
 
 		own[i] = 1;
 		cholesky_solve(p.inverse, m, NPAR, own);
+		width[i].at = j->pulse[i].t;
 		width[i].share = share[i];
 		width[i].se = sqrt(own[i]);
 		*explained += share[i] * along[i];
@@ -184,39 +185,63 @@ static double error_of(const struct joint_width *w, double var)
 	return sqrt(var + w->se * w->se);
 }
 
-/* Median of the widths of n pulses, weighted by their errors. */
-static double centre(const struct joint_width *w, size_t n, double var)
+/* A straight line of widths in time, which passes through two of them. */
+struct line {
+	const struct joint_width *from, *to;
+};
+
+static double below(const struct line *l, const struct joint_width *w)
 {
-	double best = 0, least = INFINITY;
+	const struct joint_width *a = l->from, *b = l->to;
+	double slope = b->at == a->at ? 0 : (b->share - a->share) / (b->at - a->at);
 
-	for (size_t i = 0; i < n; i++) {
-		double sum = 0;
+	return w == b ? 0 : a->share + slope * (w->at - a->at) - w->share;
+}
 
-		for (size_t k = 0; k < n; k++)
-			sum += fabs(w[k].share - w[i].share) / error_of(&w[k], var);
-		if (sum < least) {
-			least = sum;
-			best = w[i].share;
+/* The line of least deviations over their errors: a median that follows an instrument
+ * which changes slowly.  It is the best through either of its points: the sum is convex.
+ */
+static struct line centre(const struct joint_width *w, size_t n, double var)
+{
+	struct line best = { w, w };
+	double least = INFINITY, before;
+
+	do {
+		const struct line last = best;
+
+		before = least;
+		for (size_t i = 0; i < n; i++) {
+			const struct line l = { last.to, &w[i] };
+			double sum = 0;
+
+			for (size_t k = 0; k < n; k++)
+				sum += fabs(below(&l, &w[k])) / error_of(&w[k], var);
+			if (sum < least) {
+				least = sum;
+				best = l;
+			}
 		}
-	}
+	} while (least < before);
 	return best;
 }
 
-/* Squares of the deviations of the widths below the median over their variances, var
- * added: two particles that arrived together look wider, never narrower.  *count: number
- * of these. */
+/* Squares of the deviations of the widths below the line over their variances, var added:
+ * two particles that arrived together look wider, never narrower.  *count: number of
+ * these. */
 static double squares(const struct joint_width *w, size_t n, double var, size_t *count)
 {
-	const double middle = centre(w, n, var);
+	const struct line middle = centre(w, n, var);
 	double sum = 0;
 
 	*count = 0;
-	for (size_t i = 0; i < n; i++)
-		if (w[i].share < middle) {
-			sum += fmin(pow((w[i].share - middle) / error_of(&w[i], var), 2),
-				MOST);
+	for (size_t i = 0; i < n; i++) {
+		double deviation = below(&middle, &w[i]) / error_of(&w[i], var);
+
+		if (deviation > 0) {
+			sum += fmin(deviation * deviation, MOST);
 			++*count;
 		}
+	}
 	return sum;
 }
 

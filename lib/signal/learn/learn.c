@@ -432,6 +432,8 @@ static int learn_widths(struct examples *ex, struct calibration *c)
 		if (examples_refine(&rough, few, few->pulse, &result) != JOINT_OK)
 			continue;
 		m = joint_widths(ex->joint, width + n, &explained);
+		for (size_t k = 0; k < m; k++)
+			width[n + k].at += (double)few->begin;
 		if (explain_widths(ex, few, &ex->example[i],
 			    result.chi2 - (double)result.dof - explained,
 			    (double)result.dof))

@@ -105,13 +105,15 @@ void separate_set_gain(struct separate *s, long long from)
 
 /* The scatter of the widths of the last pulses that stand alone.  One that was found is
  * kept until these show another: fewer of them may not be significant. */
-static void follow_width(struct separate *s)
+static void follow_width(struct separate *s, double time)
 {
+	struct joint_width *last = &s->width[s->widths % TRACKED];
 	double explained;
 	size_t n;
 
-	if (joint_widths(s->joint, &s->width[s->widths % TRACKED], &explained) != 1)
+	if (joint_widths(s->joint, last, &explained) != 1)
 		return;
+	last->at = time;
 	n = ++s->widths < TRACKED ? s->widths : TRACKED;
 	if (n >= ENOUGH && joint_width_scatter(s->width, n) > 0)
 		joint_set_widths(&s->scene, s->width, n, s->cal.misfit);
@@ -132,7 +134,7 @@ void separate_follow(struct separate *s, const struct account *a)
 		is_clear(s, &a->pulse[0])) {
 		if (separate_is_range_free(s))
 			follow_delay(s, a->pulse[0].delta);
-		follow_width(s);
+		follow_width(s, (double)a->from + a->pulse[0].t);
 	}
 	if (a->m > 0 && isnan(s->par.known.gain))
 		follow_gain(s, (double)a->from + a->pulse[0].t);
