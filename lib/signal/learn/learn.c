@@ -411,18 +411,20 @@ static int explain_widths(const struct examples *ex, const struct example *few,
 }
 
 /* Scatter of the widths of pulses beside those of their velocities; 1 if there is some.
- * Only events that single pulses do not describe can show it. */
+ * Only events that single pulses do not describe can show it, and only if it explains
+ * most of what these leave: pulses of another shape look wider or narrower where they
+ * overlap.
+ */
 static int learn_widths(struct examples *ex, struct calibration *c)
 {
 	struct joint_width width[EXAMPLES_MAX * EXAMPLE_PULSES];
 	struct examples rough = *ex;
 	struct joint_result result;
-	double explained;
+	double explained, left, balance = 0;
 	size_t n = 0, m;
 
-	if (!learn_describes(c) ||
-		(examples_pulses(ex) <= ex->count &&
-			ex->excess <= SIGMAS_SELDOM * sqrt(2 * ex->dof)))
+	if (examples_pulses(ex) <= ex->count &&
+		ex->excess <= SIGMAS_SELDOM * sqrt(2 * ex->dof))
 		return 0;
 	examples_fit(&rough, EXAMPLES_ROUGH);
 	ex->status = rough.status;
@@ -434,12 +436,13 @@ static int learn_widths(struct examples *ex, struct calibration *c)
 		m = joint_widths(ex->joint, width + n, &explained);
 		for (size_t k = 0; k < m; k++)
 			width[n + k].at += (double)few->begin;
-		if (explain_widths(ex, few, &ex->example[i],
-			    result.chi2 - (double)result.dof - explained,
-			    (double)result.dof))
+		left = result.chi2 - (double)result.dof - explained;
+		if (explain_widths(ex, few, &ex->example[i], left, (double)result.dof)) {
 			n += m;
+			balance += explained - left;
+		}
 	}
-	joint_set_widths(&ex->scene, width, n, ex->share);
+	joint_set_widths(&ex->scene, width, balance > 0 ? n : 0, ex->share);
 	if (!(ex->scene.widths > 0))
 		return 0;
 	c->widths = ex->scene.widths;
@@ -663,7 +666,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		if (ex.count)
 			status = settle(&ex, c);
 		if (status == SEPARATE_OK && ex.count && learn_widths(&ex, c))
-			status = settle(&ex, c);
+			status = converge(&ex, c);
 	}
 	if (status == SEPARATE_OK && ex.count && wants_correction(&ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
