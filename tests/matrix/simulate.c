@@ -45,6 +45,7 @@ static struct option {
 	{ "wall", 0.9 },                 /* no particle beyond this share of the radius */
 	{ "smallest", 80e-6 },           /* diameters, m */
 	{ "largest", 120e-6 },           /* ... */
+	{ "vary", 0 },     /* share within which widths differ from those of velocities */
 	{ "volts", 1 },    /* peak of 100 um at mean velocity, before the filter */
 	{ "gain", 0.909 }, /* of sensor 2 */
 	{ "width", 1 },    /* of its coil, over that of sensor 1 */
@@ -323,6 +324,8 @@ static void add_particle(double t)
 	e->shape = find_shape(shape_name);
 	e->diameter = d;
 	e->duration = get("duration") / v;
+	if (get("vary") > 0)
+		e->duration *= 1 + get("vary") * between(-1, 1);
 	e->time[0] = t;
 	e->time[1] = t + get("transit") / v;
 	e->level[0] = get("volts") * v * pow(d / 100e-6, 3);

@@ -570,6 +570,97 @@ static void test_exchange(struct joint *j, const struct joint_scene *plain)
 	ok(silent <= exchanged / 10, "%d of them are thought improbable", silent);
 }
 
+/* Pulses whose widths scatter by 2 % beside their velocities, at which the delay is known
+ * to 0.4 %.  With the prior, errors of the delay are as stated: the mean square of 200
+ * over the variance is within 3 sqrt(2 / 200) of 1.  Without it, they are several times
+ * that.  The half of the widths below the line of an instrument that changes slowly tell
+ * a standard deviation within 3 / sqrt(2 * 100); none is told of by a scatter that noise
+ * makes, or by widths of which a third are those of two particles, which are only larger.
+ */
+static void test_widths(struct joint *j, const struct joint_scene *tied)
+{
+	enum { PULSES = 200 };
+	const double part = 3 / sqrt(PULSES);
+	struct joint_scene s = *tied, other;
+	static struct joint_width width[PULSES];
+	static double y[2][N];
+	double square[2] = { 0 }, z[2], explained, plain = 0, moved = 0;
+
+	for (unsigned i = 0; i < PULSES; i++) {
+		struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 31.62 };
+
+		philox_normal2(9, i, RNG_NOISE, 0, z);
+		other = *tied;
+		other.duration *= exp(0.02 * z[0]);
+		for (int k = 0; k < 2; k++) {
+			struct joint_pulse found = p;
+			struct joint_result r;
+
+			s.widths = k ? 0.02 : 0;
+			memset(y, 0, sizeof y);
+			joint_add(&other, &p, 1, y[0], y[1], N);
+			add_noise(y[0], 2000 + i, 0);
+			add_noise(y[1], 2000 + i, 1);
+			joint_refine(j, &s, y[0], y[1], N, &found, 1, &r);
+			square[k] += pow(found.delta - p.delta, 2) /
+				     joint_delay_variance(&found) / PULSES;
+			if (joint_widths(j, &width[i], &explained) != 1)
+				ok(0, "the width of pulse %u is known", i);
+			if (k)
+				moved = fmax(moved, fabs(width[i].share - plain));
+			plain = width[i].share;
+			width[i].at = i;
+		}
+	}
+	ok(square[0] > 2, "widths that scatter put delays out by %.2g of their variance",
+		square[0]);
+	near(square[1], 1, 0.3, "errors are as stated where the scatter is known");
+	/* The model is linear in the widths. */
+	ok(moved < 0.1 * width[0].se, "they are the same whatever the prior, to %.1g",
+		moved);
+	for (unsigned i = 0; i < PULSES; i++)
+		width[i].share += 0.1 * i / PULSES;
+	near(joint_width_scatter(width, PULSES), 0.02, 0.02 * part,
+		"the scatter is found, whatever the trend");
+	for (unsigned i = 0; i < PULSES; i++) {
+		philox_normal2(9, i, RNG_NOISE, 1, z);
+		width[i].share =
+			width[i].se * z[0] + (i % 3 ? 0 : 0.03) + 0.1 * i / PULSES;
+	}
+	joint_set_widths(&s, width, PULSES, 0.001);
+	near(s.widths, 0, 0, "trend, noise and pairs of particles are no scatter");
+	near(s.misfit, 0.001, 0, "and the misfit remains");
+}
+
+/* Two pulses that overlap, one wider and one narrower by 1 % than those of their
+ * velocities: both widths are found to their second order. */
+static void test_width_pair(struct joint *j, const struct joint_scene *tied)
+{
+	const struct joint_pulse truth[2] = { { .t = 280.4, .delta = 3, .a = 31.62 },
+		{ .t = 280.4 + 0.7 * tied->duration, .delta = 4, .a = 25 } };
+	const double share[2] = { 0.01, -0.01 };
+	struct joint_pulse found[2] = { truth[0], truth[1] };
+	struct joint_width width[2];
+	struct joint_result r;
+	static double y[2][N];
+	double explained = 0;
+	size_t m;
+
+	memset(y, 0, sizeof y);
+	for (int i = 0; i < 2; i++) {
+		struct joint_scene other = *tied;
+
+		other.duration *= exp(share[i]);
+		joint_add(&other, &truth[i], 1, y[0], y[1], N);
+	}
+	joint_refine(j, tied, y[0], y[1], N, found, 2, &r);
+	m = joint_widths(j, width, &explained);
+	ok(m == 2, "the widths of %zu pulses that overlap are known", m);
+	for (size_t i = 0; i < m; i++)
+		near(width[i].share, share[i], 1e-3, "and found");
+	near(explained, r.chi2, 0.01 * r.chi2, "they explain all that is left");
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -593,6 +684,8 @@ int main(void)
 	test_pairs(j, &s, 12);
 	test_exchange(j, &s);
 	test_laminar(j, &s);
+	test_widths(j, &s);
+	test_width_pair(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

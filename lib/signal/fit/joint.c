@@ -205,6 +205,7 @@ static void finish(struct joint *j, int full, struct joint_pulse *pulses,
 	qsort(j->pulse, (size_t)j->m, sizeof *j->pulse, by_time);
 	joint_fill_covariance(j);
 	joint_project(j);
+	joint_relax(j);
 	j->result.dof = (long)(dof + 0.5) - PAR * j->m;
 	if (j->result.dof < 1)
 		j->result.dof = 1;

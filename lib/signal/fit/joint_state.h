@@ -77,7 +77,8 @@ struct joint {
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], move[NPAR];
-	double work;  /* samples of columns computed, since it is new */
+	double work;                   /* samples of columns computed, since it is new */
+	double wide[JOINT_PULSES_MAX]; /* shares by which the pulses are wider */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
@@ -156,9 +157,16 @@ void joint_fill_covariance(struct joint *j);
 
 /* x becomes L^-1 x by the last factor, from row start on (x is zero above). */
 void joint_reduce(const struct joint *j, int np, int start, double *x);
+/* The same of L L^T. */
+void joint_solve(const struct joint *j, int np, int start, double *x);
 
 /* Factor of the normal matrix of the pulses in set, with their columns. */
 enum num_status joint_factorise(struct joint *j, const int *set, int m);
+
+/* joint_width.c */
+
+/* Takes the prior of widths into account; the residual must be projected. */
+void joint_relax(struct joint *j);
 
 /* joint_pair.c */
 

@@ -106,8 +106,7 @@ void joint_reduce(const struct joint *j, int np, int start, double *x)
 	}
 }
 
-/* Solves L L^T x = x in place, from row start on. */
-static void solve(const struct joint *j, int np, int start, double *x)
+void joint_solve(const struct joint *j, int np, int start, double *x)
 {
 	joint_reduce(j, np, start, x);
 	for (int i = np - 1; i >= 0; i--) {
@@ -253,7 +252,7 @@ double joint_fit_set(
 			continue;
 		}
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
-		solve(j, PAR * m, 0, j->move);
+		joint_solve(j, PAR * m, 0, j->move);
 		step_forth(j, set, m, &old);
 		after = joint_chi_square(j);
 		if (after < chi2) {
@@ -299,7 +298,7 @@ void joint_fill_covariance(struct joint *j)
 			if (good) {
 				memset(x, 0, sizeof(double) * (size_t)np);
 				x[PAR * i + u] = 1;
-				solve(j, np, PAR * i + u, x);
+				joint_solve(j, np, PAR * i + u, x);
 			}
 			for (int v = 0; v <= u; v++)
 				j->pulse[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;

@@ -85,7 +85,7 @@ struct calibration {
 	double transit;      /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max;      /* samples around shift */
 	double threshold, threshold_near; /* thresholds of joint.h */
-	double misfit;                    /* of joint.h: error of the shape */
+	double misfit, widths; /* of joint.h: error of the shape, and scatter */
 	int far;    /* pulses near the limits of the range of delays that was searched */
 	int events; /* pulses to which the shape was fitted, and ... */
 	int isolated;       /* ... those of them that stand alone, ... */

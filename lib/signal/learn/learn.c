@@ -400,6 +400,56 @@ static enum separate_status learn_single(struct examples *ex, struct calibration
 	return status;
 }
 
+/* 1 if pulses that overlap little, with widths of their own, which leave so much more
+ * than dof, describe an event as well as more of them do without, at their price. */
+static int explain_widths(const struct examples *ex, const struct example *few,
+	const struct example *all, double left, double dof)
+{
+	return (few->m == 1 || few->m == all->m) &&
+	       left <= CHI_SQUARE_MORE * dof + SIGMAS_NEVER * sqrt(2 * dof) &&
+	       left <= all->excess + 2 * ex->scene.threshold_near * (all->m - few->m);
+}
+
+/* Scatter of the widths of pulses beside those of their velocities; 1 if there is some.
+ * Only events that single pulses do not describe can show it, and only if it explains
+ * most of what these leave: pulses of another shape look wider or narrower where they
+ * overlap.
+ */
+static int learn_widths(struct examples *ex, struct calibration *c)
+{
+	struct joint_width width[EXAMPLES_MAX * EXAMPLE_PULSES];
+	struct examples rough = *ex;
+	struct joint_result result;
+	double explained, left, balance = 0;
+	size_t n = 0, m;
+
+	if (examples_pulses(ex) <= ex->count &&
+		ex->excess <= SIGMAS_SELDOM * sqrt(2 * ex->dof))
+		return 0;
+	examples_fit(&rough, EXAMPLES_ROUGH);
+	ex->status = rough.status;
+	for (int i = 0; i < ex->count && ex->status == SEPARATE_OK; i++) {
+		struct example *few = &rough.example[i];
+
+		if (examples_refine(&rough, few, few->pulse, &result) != JOINT_OK)
+			continue;
+		m = joint_widths(ex->joint, width + n, &explained);
+		for (size_t k = 0; k < m; k++)
+			width[n + k].at += (double)few->begin;
+		left = result.chi2 - (double)result.dof - explained;
+		if (explain_widths(ex, few, &ex->example[i], left, (double)result.dof)) {
+			n += m;
+			balance += explained - left;
+		}
+	}
+	joint_set_widths(&ex->scene, width, balance > 0 ? n : 0, ex->share);
+	if (!(ex->scene.widths > 0))
+		return 0;
+	c->widths = ex->scene.widths;
+	ex->misfit = fmax(ex->misfit, ex->scene.misfit);
+	return 1;
+}
+
 /* Share of the range of delays beyond which there are no particles of plug flow, whose
  * velocities differ by a few per cent.  With 0.5, 0.7 and 0.85 none of 1200 rows in
  * turbulent flow is wrong and all are found, and groups in plug flow do not differ
@@ -615,6 +665,8 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		scene_of(c, &ex.scene);
 		if (ex.count)
 			status = settle(&ex, c);
+		if (status == SEPARATE_OK && ex.count && learn_widths(&ex, c))
+			status = converge(&ex, c);
 	}
 	if (status == SEPARATE_OK && ex.count && wants_correction(&ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
@@ -632,7 +684,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	c->events = examples_pulses(&ex);
 	c->drift = ex.drift;
 	memcpy(c->rest, ex.rest, sizeof c->rest);
-	c->misfit = fmax(c->misfit, ex.share);
+	c->misfit = fmax(ex.misfit, ex.share);
 	c->corrected = ex.corrected;
 	learn_range(&ex, c);
 	joint_free(ex.joint);

@@ -1,4 +1,4 @@
-/* following.c - flow and gain followed by pulses */
+/* following.c - flow, gain and widths followed by pulses */
 #include "num/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -103,6 +103,22 @@ void separate_set_gain(struct separate *s, long long from)
 					 separate_noise_at(s, c, at[c]);
 }
 
+/* The scatter of the widths of the last pulses that stand alone.  One that was found is
+ * kept until these show another: fewer of them may not be significant. */
+static void follow_width(struct separate *s, double time)
+{
+	struct joint_width *last = &s->width[s->widths % TRACKED];
+	double explained;
+	size_t n;
+
+	if (joint_widths(s->joint, last, &explained) != 1)
+		return;
+	last->at = time;
+	n = ++s->widths < TRACKED ? s->widths : TRACKED;
+	if (n >= ENOUGH && joint_width_scatter(s->width, n) > 0)
+		joint_set_widths(&s->scene, s->width, n, s->cal.misfit);
+}
+
 /* Share of the false alarms that noise may take for a pulse to follow: by following those
  * themselves, whose delays are anywhere in the range, it would grow without limit. */
 static const double FOLLOWED = 1e-3;
@@ -115,8 +131,11 @@ static int is_clear(const struct separate *s, const struct joint_pulse *p)
 void separate_follow(struct separate *s, const struct account *a)
 {
 	if (a->m == 1 && a->goodness.stretch == SEPARATE_ALONE &&
-		separate_is_range_free(s) && is_clear(s, &a->pulse[0]))
-		follow_delay(s, a->pulse[0].delta);
+		is_clear(s, &a->pulse[0])) {
+		if (separate_is_range_free(s))
+			follow_delay(s, a->pulse[0].delta);
+		follow_width(s, (double)a->from + a->pulse[0].t);
+	}
 	if (a->m > 0 && isnan(s->par.known.gain))
 		follow_gain(s, (double)a->from + a->pulse[0].t);
 }

@@ -153,6 +153,8 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 		.level_samples = s->levels,
 		.common = { s->common.correlation, s->common.left[0], s->common.left[1] },
 		.second = s->quadrature };
+	view->cal.widths = s->scene.widths;
+	view->cal.misfit = s->scene.misfit;
 	view->cal.gain *= separate_gain_at(s, (double)s->done) * s->cal.noise[1] /
 			  (fabs(s->cal.gain) * s->cal.noise[0]);
 	memcpy(view->level, s->level, sizeof view->level);
