@@ -393,16 +393,14 @@ void tones_track_start(struct tones_track *t, int tones, const double *omega,
 	memcpy(t->omega, omega, (size_t)tones * sizeof *omega);
 }
 
-/* Coefficients of the tones counted from dt samples later. */
-static void turn_on(const struct tones_track *t, double dt, double *c)
+/* Turns the phase of tone k. */
+static void turn_phase(double *coefficient, int k, double angle)
 {
-	for (int k = 0; k < t->tones; k++) {
-		double co = cos(t->omega[k] * dt), si = sin(t->omega[k] * dt);
-		double a = c[1 + 2 * k], b = c[2 + 2 * k];
+	double co = cos(angle), si = sin(angle);
+	double *c = coefficient + 1 + 2 * k, a = c[0], b = c[1];
 
-		c[1 + 2 * k] = a * co + b * si;
-		c[2 + 2 * k] = b * co - a * si;
-	}
+	c[0] = a * co + b * si;
+	c[1] = b * co - a * si;
 }
 
 /* Moves on by a knot at index at, whose coefficients are those of x[0 .. to - from) from
@@ -417,8 +415,10 @@ static enum tones_status add_knot(
 
 	if (status == TONES_MEMORY)
 		return status;
-	for (int k = 0; k < 2 && t->knots > 0; k++)
-		turn_on(t, at - t->at, t->coefficient[k]);
+	for (int k = 0; k < t->tones && t->knots > 0; k++) {
+		turn_phase(c, k, t->omega[k] * (at - t->at));
+		turn_phase(t->coefficient[1], k, t->omega[k] * (at - t->at));
+	}
 	t->before = t->at;
 	t->at = at;
 	if (t->keeps_offset)
@@ -448,7 +448,8 @@ static enum tones_status add_knot(
 static void follow_turn(struct tones_track *t)
 {
 	const double gap = 2 * M_PI / (double)t->hop;
-	const double *c = t->coefficient[0], *old = t->coefficient[1];
+	const double *c = t->coefficient[0];
+	double *old = t->coefficient[1];
 
 	for (int k = 0; k < t->tones && t->knots > 1; k++) {
 		double a = c[1 + 2 * k], b = c[2 + 2 * k];
@@ -458,8 +459,10 @@ static void follow_turn(struct tones_track *t)
 		double below = k > 0 ? t->omega[k - 1] : 0;
 		double above = k + 1 < t->tones ? t->omega[k + 1] : M_PI;
 
-		if (t->clear[k] && omega - below > gap && above - omega > gap)
+		if (t->clear[k] && omega - below > gap && above - omega > gap) {
 			t->omega[k] = omega;
+			turn_phase(old, k, turn);
+		}
 	}
 }
 

@@ -158,8 +158,6 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	view->cal.gain *= separate_gain_at(s, (double)s->done) * s->cal.noise[1] /
 			  (fabs(s->cal.gain) * s->cal.noise[0]);
 	memcpy(view->level, s->level, sizeof view->level);
-	if (s->ended) /* the next record may go on from here */
-		memcpy(view->cal.omega, s->buffer[0].tones.omega, sizeof view->cal.omega);
 	validation_flow(s->validation, &view->flow);
 	return 1;
 }
