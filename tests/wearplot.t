@@ -85,6 +85,7 @@ fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.
 fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd
 fails 'an unknown option' 2 'no such option' wearplot --colour contact.nrrd
 fails 'a time that is no number' 2 'from abc: want a number' wearplot --from abc signal.au
+fails 'a time before the record' 2 'from -5: want a time from 0 on' wearplot --from -5 signal.au
 fails 'a stretch of no length' 2 'want a time after' wearplot --from 1 --to 1 signal.au
 fails 'a record that ends before' 1 'ends before' wearplot --from 100 signal.au
 is '--version states the version' "$(wearplot -V)" "wearplot (wearpipe) $(sed -n 's/^VERSION = //p' "$top/Makefile")"
