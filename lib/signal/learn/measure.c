@@ -167,27 +167,25 @@ static int merge_tones(int tones, const double *omega, double gap, double *merge
 }
 
 /* Level of the record without these tones, which are followed from hop to hop: by the
- * median, which pulses change little, corrected for the coefficients fitted to two hops.
- */
+ * median, which pulses change little, corrected for the coefficients fitted to two hops;
+ * INFINITY if some hop does not resolve them. */
 static enum separate_status level_without_tones(
 	const struct record *rec, const struct calibration *c, double *level)
 {
-	double share = (2 * c->tones + 1) / (2.0 * (double)c->tone_hop);
+	double share = (2 * c->tones + 1) / (2.0 * (double)c->tone_hop), sum = 0;
+	enum separate_status status = SEPARATE_OK;
 	struct tones_track track;
 
-	*level = 0;
-	for (int k = 0; k < 2; k++) {
+	for (int k = 0; k < 2 && status == SEPARATE_OK; k++) {
 		double scale;
-		enum separate_status status;
 
 		memcpy(rec->work, k ? rec->y2 : rec->y1, rec->n * sizeof *rec->work);
 		status = take_tones(c, rec->work, rec->n, &track);
-		if (status != SEPARATE_OK)
-			return status;
 		scale = robust_scale(rec->work, rec->n);
-		*level += scale * scale * (1 + share) / (1 - share);
+		sum += scale * scale * (1 + share) / (1 - share);
 	}
-	return SEPARATE_OK;
+	*level = status == SEPARATE_OK ? sum : INFINITY;
+	return status == SEPARATE_TONES ? SEPARATE_OK : status;
 }
 
 /* Share of the noise that lines may add: of the hops that add no more, the longest is
@@ -204,8 +202,10 @@ static const double PERIODS = 16;
 
 /* Chooses the hop by how fast the lines change.  Their frequencies wander, mains by 0.1
  * Hz and more, and a coefficient is that of two hops.  Short hops do not resolve close
- * lines, such as the parts into which a long record splits a wandering one. */
-static enum separate_status choose_hop(const struct record *rec, struct calibration *c)
+ * lines, such as the parts into which a long record splits a wandering one.  *chosen: the
+ * level then. */
+static enum separate_status choose_hop(
+	const struct record *rec, struct calibration *c, double *chosen)
 {
 	enum { SHORTEST = 256, HOPS = 16 };
 	struct calibration trial = *c, *t = &trial;
@@ -226,12 +226,14 @@ static enum separate_status choose_hop(const struct record *rec, struct calibrat
 			return SEPARATE_MEMORY;
 		least = fmin(least, level[k]);
 	}
+	*chosen = INFINITY;
 	for (int k = HOPS - 1; k >= 0 && isfinite(least); k--) {
 		if (level[k] > (1 + LINES) * least)
 			continue;
 		c->tone_hop = (size_t)SHORTEST << k;
 		c->tones = merge_tones(
 			c->tones, c->omega, 2 * M_PI / (double)c->tone_hop, c->omega);
+		*chosen = level[k];
 		break;
 	}
 	return SEPARATE_OK;
@@ -330,71 +332,76 @@ static enum num_status add_sweep(
 	return status;
 }
 
-/* Levels, see level_without_tones(), with the tones of c and with those of before, at the
- * hop of c; INFINITY if that does not resolve them. */
-static enum separate_status compare_levels(const struct record *rec,
-	const struct calibration *before, const struct calibration *c, double level[2])
-{
-	struct calibration same_hop = *before;
-
-	same_hop.tone_hop = c->tone_hop;
-	for (int k = 0; k < 2; k++) {
-		enum separate_status status =
-			level_without_tones(rec, k ? &same_hop : c, &level[k]);
-
-		if (status == SEPARATE_MEMORY)
-			return status;
-		if (status != SEPARATE_OK)
-			level[k] = INFINITY;
-	}
-	return SEPARATE_OK;
-}
-
-/* Keeps the tones of c rather than those of before if the record is quieter without them,
- * by more than this share of the noise; *kept: 1 if so. */
-static enum separate_status keep_quieter(const struct record *rec, double share,
-	const struct calibration *before, struct calibration *c, int *kept)
-{
-	double level[2];
-	enum separate_status status = compare_levels(rec, before, c, level);
-
-	*kept = status == SEPARATE_OK && (1 + share) * level[0] < level[1];
-	if (!*kept)
-		*c = *before;
-	return status;
-}
-
 /* The line of a sweep has its mean frequency, not that at the beginning of the record:
- * follows the tones to the end and back. */
-static enum separate_status settle_tones(const struct record *rec, struct calibration *c)
+ * follows the tones to the end and back, and keeps these frequencies if the level is
+ * lower. */
+static enum separate_status settle_tones(
+	const struct record *rec, struct calibration *c, double *level)
 {
-	const struct calibration before = *c;
+	struct calibration settled = *c;
 	struct tones_track track;
 	enum separate_status status;
-	int kept;
+	double lower;
 
 	memcpy(rec->work, rec->y1, rec->n * sizeof *rec->work);
 	status = take_tones(c, rec->work, rec->n, &track);
 	if (status != SEPARATE_OK)
 		return status;
-	memcpy(c->omega, track.omega, sizeof c->omega);
-	if (track_back(rec->y1, rec->n, c->tone_hop, c->tones, c->omega) != NUM_OK)
+	memcpy(settled.omega, track.omega, sizeof settled.omega);
+	if (track_back(rec->y1, rec->n, c->tone_hop, c->tones, settled.omega) != NUM_OK)
 		return SEPARATE_MEMORY;
-	return keep_quieter(rec, 0, &before, c, &kept);
+	status = level_without_tones(rec, &settled, &lower);
+	if (status == SEPARATE_OK && lower < *level) {
+		*c = settled;
+		*level = lower;
+	}
+	return status;
 }
 
-/* Finds a sweep in rest, 2 n samples, of the record without the tones of c. */
-static enum separate_status search_sweep(
-	const struct record *rec, const double *rest, struct calibration *c, int *added)
+/* Finds lines in rest, 2 n samples, of the record without the tones of c.  Lines that
+ * merge with those known are none, unless the level falls: they would be found again. */
+static enum separate_status search_lines(const struct record *rec, const double *rest,
+	int side, struct calibration *c, double *level, int *added)
 {
 	const struct calibration before = *c;
+	double lower;
+	enum separate_status status = SEPARATE_MEMORY;
+
+	if (add_tones(rest, rest + rec->n, rec->n, side, c, added) == NUM_OK)
+		status = *added ? choose_hop(rec, c, &lower) : SEPARATE_OK;
+	if (status == SEPARATE_OK && *added)
+		status = settle_tones(rec, c, &lower);
+	if (status != SEPARATE_OK || !*added)
+		return status;
+	*added = c->tones > before.tones || (1 + LINES) * lower < *level;
+	*level = *added ? lower : *level;
+	*c = *added ? *c : before;
+	return status;
+}
+
+/* The same of a sweep, which is kept if the level is lower than that at the same hop
+ * without it. */
+static enum separate_status search_sweep(const struct record *rec, const double *rest,
+	struct calibration *c, double *level, int *added)
+{
+	const struct calibration before = *c;
+	struct calibration without = *c;
+	double lower, other;
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (add_sweep(rest, rest + rec->n, rec->n, c, added) == NUM_OK)
-		status = *added ? choose_hop(rec, c) : SEPARATE_OK;
-	return status == SEPARATE_OK && *added
-		       ? keep_quieter(rec, LINES, &before, c, added)
-		       : status;
+		status = *added ? choose_hop(rec, c, &lower) : SEPARATE_OK;
+	if (status != SEPARATE_OK || !*added)
+		return status;
+	without.tone_hop = c->tone_hop;
+	status = level_without_tones(rec, &without, &other);
+	*added = (1 + LINES) * lower < other;
+	*c = *added ? *c : before;
+	if (status == SEPARATE_OK && *added) {
+		*level = lower;
+		status = settle_tones(rec, c, level);
+	}
+	return status;
 }
 
 /* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
@@ -402,7 +409,7 @@ static enum separate_status search_sweep(
 static enum separate_status search_tones(const struct record *rec, struct calibration *c)
 {
 	size_t n = rec->n;
-	double *rest = malloc(2 * n * sizeof *rest);
+	double *rest = malloc(2 * n * sizeof *rest), level = INFINITY;
 	int added = 1, side = TONES_SIDE;
 	enum separate_status status = rest ? SEPARATE_OK : SEPARATE_MEMORY;
 
@@ -415,14 +422,10 @@ static enum separate_status search_tones(const struct record *rec, struct calibr
 			if (c->tones > 0)
 				status = take_tones(c, rest + (size_t)k * n, n, &track);
 		}
-		if (status == SEPARATE_OK &&
-			add_tones(rest, rest + n, n, side, c, &added) != NUM_OK)
-			status = SEPARATE_MEMORY;
 		if (status == SEPARATE_OK)
-			status = added ? choose_hop(rec, c)
-				       : search_sweep(rec, rest, c, &added);
-		if (status == SEPARATE_OK && added)
-			status = settle_tones(rec, c);
+			status = search_lines(rec, rest, side, c, &level, &added);
+		if (status == SEPARATE_OK && !added)
+			status = search_sweep(rec, rest, c, &level, &added);
 		side = NEAR_SIDE;
 	}
 	free(rest);
@@ -435,6 +438,7 @@ static enum separate_status find_tones(struct record *rec, struct calibration *c
 	size_t n = rec->n, hop = n < 2 * LONG_HOP ? n : LONG_HOP;
 	struct tones_track track;
 	struct calibration t;
+	double level;
 	enum separate_status status = SEPARATE_OK;
 
 	c->tone_hop = hop;
@@ -443,7 +447,7 @@ static enum separate_status find_tones(struct record *rec, struct calibration *c
 		memcpy(c->omega, par->omega, sizeof c->omega);
 		sort_numbers(c->omega, (size_t)c->tones);
 		if (c->tones > 0)
-			status = choose_hop(rec, c);
+			status = choose_hop(rec, c, &level);
 	} else {
 		status = search_tones(rec, c);
 	}
