@@ -11,7 +11,7 @@
  * variance of the noise is unknown, so that predictions are Student-t.
  * The slope of h is taken at the predicted damage, as far as it is known, and not at that
  * observed; otherwise noise alone would favour curved coordinates.  Innovations are
- *limited to a Student's t as rare as three standard deviations.
+ * limited to a Student's t as rare as three standard deviations.
  *
  * Regime changes: as the age grows, particles are drawn from the present trends by their
  * weight.  From then on their rate grows as e^{g (t - onset)}, or has fallen to a lower
