@@ -115,20 +115,27 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 	ball_free(&b);
 }
 
+/* Square cells of unit modulus on a period. */
+static struct contact *periodic(int nx, int ny, double cell)
+{
+	struct contact_par par = { .nx = nx,
+		.ny = ny,
+		.dx = cell,
+		.dy = cell,
+		.estar = 1,
+		.boundary = CONTACT_PERIODIC,
+		.tolerance = 1e-12,
+		.max_iterations = 1000 };
+
+	return contact_new(&par);
+}
+
 /* Waves along x on a period: sin^2(pi c / l) = (1 - T / mu N) sin^2(pi a / l), with a the
  * half width of a contact (Westergaard) and c that of what sticks. */
 static void wave(double load, double part)
 {
 	enum { N = 1024 };
-	struct contact_par par = { .nx = N,
-		.ny = 1,
-		.dx = 1. / N,
-		.dy = 1. / N,
-		.estar = 1,
-		.boundary = CONTACT_PERIODIC,
-		.tolerance = 1e-12,
-		.max_iterations = 1000 };
-	struct contact *c = contact_new(&par);
+	struct contact *c = periodic(N, 1, 1. / N);
 	double h[N], p[N] = { 0 }, q[N], full = M_PI * 1e-3;
 	double want = 2 / M_PI * asin(sqrt(load * (1 - part)));
 	struct contact_result normal;
@@ -205,15 +212,7 @@ static void ellipse(double kx, double ky, enum contact_multiply multiply)
 /* Shear that varies along its direction is plane strain, across it antiplane. */
 static void ridges(int nx, int ny, double want, double ratio)
 {
-	struct contact_par par = { .nx = nx,
-		.ny = ny,
-		.dx = 1,
-		.dy = 1,
-		.estar = 1,
-		.boundary = CONTACT_PERIODIC,
-		.tolerance = 1e-12,
-		.max_iterations = 1000 };
-	struct contact *c = contact_new(&par);
+	struct contact *c = periodic(nx, ny, 1);
 	double q[64], along;
 
 	for (int i = 0; i < 64; i++)
