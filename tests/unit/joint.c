@@ -1,6 +1,7 @@
 /* Joint fit of pulses: exact without noise, at the Cramer-Rao bound with noise */
 #include "signal/fit/joint.h"
 #include "num/philox.h"
+#include "num/sigmas.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>
@@ -574,8 +575,9 @@ static void test_exchange(struct joint *j, const struct joint_scene *plain)
  * to 0.4 %.  With the prior, errors of the delay are as stated: the mean square of 200
  * over the variance is within 3 sqrt(2 / 200) of 1.  Without it, they are several times
  * that.  The half of the widths below the line of an instrument that changes slowly tell
- * a standard deviation within 3 / sqrt(2 * 100); none is told of by a scatter that noise
- * makes, or by widths of which a third are those of two particles, which are only larger.
+ * a standard deviation within 3 / sqrt(2 * 100).  Widths of which a third are those of
+ * two particles, which are only larger, move the line up, and tell of less than their
+ * error.
  */
 static void test_widths(struct joint *j, const struct joint_scene *tied)
 {
@@ -584,7 +586,7 @@ static void test_widths(struct joint *j, const struct joint_scene *tied)
 	struct joint_scene s = *tied, other;
 	static struct joint_width width[PULSES];
 	static double y[2][N];
-	double square[2] = { 0 }, z[2], explained, plain = 0, moved = 0;
+	double square[2] = { 0 }, z[2], explained, plain = 0, moved = 0, scatter;
 
 	for (unsigned i = 0; i < PULSES; i++) {
 		struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 31.62 };
@@ -620,16 +622,26 @@ static void test_widths(struct joint *j, const struct joint_scene *tied)
 		moved);
 	for (unsigned i = 0; i < PULSES; i++)
 		width[i].share += 0.1 * i / PULSES;
-	near(joint_width_scatter(width, PULSES), 0.02, 0.02 * part,
+	near(joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN), 0.02, 0.02 * part,
 		"the scatter is found, whatever the trend");
 	for (unsigned i = 0; i < PULSES; i++) {
 		philox_normal2(9, i, RNG_NOISE, 1, z);
 		width[i].share =
 			width[i].se * z[0] + (i % 3 ? 0 : 0.03) + 0.1 * i / PULSES;
 	}
-	joint_set_widths(&s, width, PULSES, 0.001);
-	near(s.widths, 0, 0, "trend, noise and pairs of particles are no scatter");
-	near(s.misfit, 0.001, 0, "and the misfit remains");
+	scatter = joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN);
+	ok(scatter < width[0].se,
+		"trend, noise and pairs of particles are no scatter: "
+		"%.1g of their error",
+		scatter / width[0].se);
+	/* Small pulses beside others that are not seen look wider or narrower. */
+	for (unsigned i = 0; i < PULSES; i++) {
+		philox_normal2(10, i, RNG_NOISE, 1, z);
+		width[i].se = i % 4 ? 0.01 : 1e-4;
+		width[i].share = width[i].se * z[0] * (i % 4 ? 2 : 1);
+	}
+	scatter = joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN);
+	ok(scatter < 1e-3, "small pulses show no scatter that large ones do not have");
 }
 
 /* Two pulses that overlap, one wider and one narrower by 1 % than those of their

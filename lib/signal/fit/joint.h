@@ -174,13 +174,15 @@ struct joint_width {
 size_t joint_widths(struct joint *joint, struct joint_width *width, double *explained);
 
 /* Standard deviation of the widths of n pulses from a straight line in time, beside that
- * of their errors; 0 unless noise rarely explains them. */
-double joint_width_scatter(const struct joint_width *width, size_t n);
+ * of their errors, of maximum likelihood; 0 unless twice the logarithm of the ratio of
+ * its likelihood to that of none exceeds certain. */
+enum { JOINT_WIDTHS_MAX = 256 };
+double joint_width_scatter(const struct joint_width *width, size_t n, double certain);
 
 /* Sets widths to the scatter of those of n pulses, and misfit to at least what three
  * standard deviations of them leave of a pulse. */
-void joint_set_widths(struct joint_scene *scene, const struct joint_width *width,
-	size_t n, double misfit);
+void joint_set_widths(struct joint_scene *scene, double scatter,
+	const struct joint_width *width, size_t n, double misfit);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);

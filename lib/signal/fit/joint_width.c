@@ -177,14 +177,6 @@ void joint_relax(struct joint *j)
 	}
 }
 
-/* Deviations beyond which a width counts no more: it is that of another event. */
-static const double MOST = SIGMAS_RARELY * SIGMAS_RARELY;
-
-static double error_of(const struct joint_width *w, double var)
-{
-	return sqrt(var + w->se * w->se);
-}
-
 /* A straight line of widths in time, which passes through two of them. */
 struct line {
 	const struct joint_width *from, *to;
@@ -201,7 +193,7 @@ static double below(const struct line *l, const struct joint_width *w)
 /* The line of least deviations over their errors: a median that follows an instrument
  * which changes slowly.  It is the best through either of its points: the sum is convex.
  */
-static struct line centre(const struct joint_width *w, size_t n, double var)
+static struct line centre(const struct joint_width *w, const double *error, size_t n)
 {
 	struct line best = { w, w };
 	double least = INFINITY, before;
@@ -214,8 +206,8 @@ static struct line centre(const struct joint_width *w, size_t n, double var)
 			const struct line l = { last.to, &w[i] };
 			double sum = 0;
 
-			for (size_t k = 0; k < n; k++)
-				sum += fabs(below(&l, &w[k])) / error_of(&w[k], var);
+			for (size_t k = 0; k < n && sum < least; k++)
+				sum += fabs(below(&l, &w[k])) / error[k];
 			if (sum < least) {
 				least = sum;
 				best = l;
@@ -225,66 +217,57 @@ static struct line centre(const struct joint_width *w, size_t n, double var)
 	return best;
 }
 
-/* Squares of the deviations of the widths below the line over their variances, var added:
- * two particles that arrived together look wider, never narrower.  *count: number of
- * these. */
-static double squares(const struct joint_width *w, size_t n, double var, size_t *count)
+/* Minus twice the logarithm of the likelihood of a scatter of this variance, but for a
+ * constant; slope: its derivative by the variance.  Only what lies below the line counts,
+ * and for both sides: two particles that arrived together look wider, never narrower. */
+static double unlikely(const struct joint_width *w, size_t n, double var, double *slope)
 {
-	const struct line middle = centre(w, n, var);
-	double sum = 0;
+	double error[JOINT_WIDTHS_MAX], sum = 0;
+	struct line middle;
 
-	*count = 0;
+	for (size_t i = 0; i < n; i++)
+		error[i] = sqrt(var + w[i].se * w[i].se);
+	middle = centre(w, error, n);
+	*slope = 0;
 	for (size_t i = 0; i < n; i++) {
-		double deviation = below(&middle, &w[i]) / error_of(&w[i], var);
+		double deviation = fmax(0, below(&middle, &w[i]) / error[i]);
+		double square = deviation * deviation;
 
-		if (deviation > 0) {
-			sum += fmin(deviation * deviation, MOST);
-			++*count;
-		}
+		sum += square + log(error[i]);
+		*slope += (0.5 - square) / (error[i] * error[i]);
 	}
 	return sum;
 }
 
-/* 1 if noise rarely makes this chi-square; its cube root is nearly normal (Wilson and
- * Hilferty, Proc. Natl. Acad. Sci. 17, 1931). */
-static int is_significant(double chi2, size_t count)
+double joint_width_scatter(const struct joint_width *w, size_t n, double certain)
 {
-	double var = 2 / (9 * (double)count);
+	enum { ROUNDS = 24 };
+	double none, lo = 0, hi = 0, slope;
 
-	return count > 0 &&
-	       cbrt(chi2 / (double)count) > 1 - var + SIGMAS_RARELY * sqrt(var);
-}
-
-double joint_width_scatter(const struct joint_width *w, size_t n)
-{
-	enum { ROUNDS = 40 };
-	double lo = 0, hi = 0, sum;
-	size_t count;
-
-	sum = squares(w, n, 0, &count);
-	if (!is_significant(sum, count))
+	none = unlikely(w, n, 0, &slope);
+	if (!(slope < 0))
 		return 0;
 	for (size_t i = 0; i < n; i++)
 		hi = fmax(hi, w[i].share * w[i].share);
 	for (int k = 0; k < ROUNDS; k++) {
 		double middle = 0.5 * (lo + hi);
 
-		sum = squares(w, n, middle, &count);
-		if (sum > (double)count)
+		unlikely(w, n, middle, &slope);
+		if (slope < 0)
 			lo = middle;
 		else
 			hi = middle;
 	}
-	return sqrt(hi);
+	return none - unlikely(w, n, hi, &slope) > certain ? sqrt(hi) : 0;
 }
 
-void joint_set_widths(
-	struct joint_scene *s, const struct joint_width *w, size_t n, double misfit)
+void joint_set_widths(struct joint_scene *s, double scatter, const struct joint_width *w,
+	size_t n, double misfit)
 {
 	double left = 0;
 
 	for (size_t i = 0; i < n; i++)
 		left += w[i].left / (double)n;
-	s->widths = joint_width_scatter(w, n);
+	s->widths = scatter;
 	s->misfit = fmax(misfit, pow(SIGMAS_SELDOM * s->widths, 2) * left);
 }

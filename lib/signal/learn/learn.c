@@ -442,10 +442,10 @@ static int learn_widths(struct examples *ex, struct calibration *c)
 			balance += explained - left;
 		}
 	}
-	joint_set_widths(&ex->scene, width, balance > 0 ? n : 0, ex->share);
-	if (!(ex->scene.widths > 0))
+	c->widths = balance > 0 ? joint_width_scatter(width, n, LIKELIHOOD_CERTAIN) : 0;
+	if (!(c->widths > 0))
 		return 0;
-	c->widths = ex->scene.widths;
+	joint_set_widths(&ex->scene, c->widths, width, n, ex->share);
 	ex->misfit = fmax(ex->misfit, ex->scene.misfit);
 	return 1;
 }

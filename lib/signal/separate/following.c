@@ -108,15 +108,18 @@ void separate_set_gain(struct separate *s, long long from)
 static void follow_width(struct separate *s, double time)
 {
 	struct joint_width *last = &s->width[s->widths % TRACKED];
-	double explained;
+	double explained, scatter;
 	size_t n;
 
 	if (joint_widths(s->joint, last, &explained) != 1)
 		return;
 	last->at = time;
 	n = ++s->widths < TRACKED ? s->widths : TRACKED;
-	if (n >= ENOUGH && joint_width_scatter(s->width, n) > 0)
-		joint_set_widths(&s->scene, s->width, n, s->cal.misfit);
+	scatter = n >= ENOUGH
+			  ? joint_width_scatter(s->width, n, SIGMAS_NEVER * SIGMAS_NEVER)
+			  : 0;
+	if (scatter > 0)
+		joint_set_widths(&s->scene, scatter, s->width, n, s->cal.misfit);
 }
 
 /* Share of the false alarms that noise may take for a pulse to follow: by following those
