@@ -1,6 +1,7 @@
 /* calibrate.c - see calibrate.h */
 #include "signal/learn/calibrate.h"
 #include "num/dot.h"
+#include "signal/learn/find_lines.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include "signal/learn/velocities.h"
@@ -381,12 +382,14 @@ static enum separate_status find_velocities(const struct look *look, struct velo
 {
 	const size_t n = look->n;
 	double *y = malloc((3 * n + 1) * sizeof *y);
+	struct calibration c = { .tones = 0 };
+	struct lines lines;
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (y) {
 		memcpy(y, look->x[0], n * sizeof *y);
 		memcpy(y + n, look->x[1], n * sizeof *y);
-		status = measure_lines(look->par, y, y + n, n, y + 2 * n);
+		status = find_lines(look->par, y, y + n, n, y + 2 * n, &c, &lines);
 	}
 	if (status == SEPARATE_OK && velocities_find(y, y + n, n, v) != NUM_OK)
 		status = SEPARATE_MEMORY;

@@ -48,8 +48,4 @@ int measure_white_above(const struct look *look, double duration);
 enum separate_status measure(struct look *look, const double *raw, double *y1, double *y2,
 	size_t n, double *work, struct calibration *c);
 
-/* Subtracts the lines, if there are any, from both channels of a record.  work: n. */
-enum separate_status measure_lines(
-	const struct calibrate_par *par, double *y1, double *y2, size_t n, double *work);
-
 #endif
