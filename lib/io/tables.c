@@ -5,10 +5,10 @@
 #include "cli/text.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"
-#include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/keys.h"
+#include "num/crc32.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
