@@ -16,6 +16,9 @@
 #include <string.h>
 
 enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a table */
+/* Reasons for doubt that are quoted: all that one record has, and some lines of a
+ * terminal where each of many realisations has one of its own. */
+enum { REASONS_QUOTED = 8 };
 
 static const char promise[] = "# stream: " ENDS_PROMISE "\n";
 static const char end_line[] = "# end: ";
@@ -39,7 +42,9 @@ struct table_in {
 	const char *blanks; /* separator of the cells */
 	int headed;         /* the table has a line of names */
 	int pending; /* the row read ahead by table_open() has not been returned yet */
-	struct keys keys; /* of comment lines */
+	struct keys keys;    /* of comment lines */
+	struct keys reasons; /* of the lines "# doubtful:", each once, without values */
+	char *doubt;         /* the reasons as one text */
 	table_comment_taker *take;
 	void *context; /* of take */
 	struct upstream upstream;
@@ -98,6 +103,8 @@ static void keep_key(struct table_in *t, char *comment)
 		die(EXIT_RUN, "%s: line %ld: the units change within the table", t->name,
 			t->number);
 	keys_set(&t->keys, comment, value);
+	if (!strcmp(comment, "doubtful") && (size_t)t->reasons.n < t->most_keys)
+		keys_set(&t->reasons, value, "");
 	free(value);
 	if ((size_t)t->keys.n > t->most_keys)
 		die(EXIT_RUN, "%s: line %ld: more than %zu keys", t->name, t->number,
@@ -526,9 +533,25 @@ void table_one_unit(struct table_in *t)
 			t->name, t->number, t->cell[column], t->unit);
 }
 
-const char *table_doubted(const struct table_in *t)
+const char *table_doubt(struct table_in *t)
 {
-	const char *why = table_key(t, "doubtful");
+	int n = t->reasons.n;
+
+	if (n == 0)
+		return NULL;
+	free(t->doubt);
+	t->doubt = xstrdup(t->reasons.key[0]);
+	for (int i = 1; i < n && i < REASONS_QUOTED; i++)
+		t->doubt = xappend(t->doubt, "; %s", t->reasons.key[i]);
+	if (n > REASONS_QUOTED)
+		t->doubt = xappend(t->doubt, "; and %s%d more reasons",
+			(size_t)n < t->most_keys ? "" : "at least ", n - REASONS_QUOTED);
+	return t->doubt;
+}
+
+const char *table_doubted(struct table_in *t)
+{
+	const char *why = table_doubt(t);
 
 	if (why)
 		warn("%s: doubtful by its own account: %s", table_name(t), why);
@@ -544,6 +567,8 @@ void table_close(struct table_in *t)
 	free(t->scale);
 	free(t->cell);
 	keys_free(&t->keys);
+	keys_free(&t->reasons);
+	free(t->doubt);
 	upstream_free(&t->upstream);
 	free(t->unit);
 	free(t->line);

@@ -183,7 +183,7 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
-static const char *doubted; /* why the input is doubtful, NULL: it is not */
+static char *doubted; /* why the input is doubtful, NULL: it is not */
 
 /* Ends the output, which is as doubtful as the input. */
 static void finish(struct table_out *t)
@@ -209,6 +209,7 @@ static void read_particles(
 	int cr, cs, cd, cv, ca;
 	long last = 0;
 	struct summary summary;
+	const char *why;
 
 	cr = table_need(t, "realisation");
 	cs = table_need(t, "step");
@@ -241,7 +242,9 @@ static void read_particles(
 				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
-	doubted = table_doubted(t) ? xstrdup(table_key(t, "doubtful")) : doubted;
+	why = table_doubted(t);
+	if (why)
+		doubted = doubted ? xappend(doubted, "; %s", why) : xstrdup(why);
 	study->area = table_quantity(t, "nominal_area", UNIT_AREA);
 	study->distance = table_quantity(t, "step_distance", UNIT_LENGTH);
 	*cmd = opt_cmd(table_upstream(t), NULL);
