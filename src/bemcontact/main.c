@@ -4,7 +4,9 @@
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/contact_options.h"
+#include "common/edge.h"
 #include "common/raw_layout.h"
+#include "contact/patches.h"
 #include "contact/solver.h"
 #include "io/fields.h"
 #include "tables.h"
@@ -219,6 +221,19 @@ void put_row(const struct task *t, const double *height, const struct contact_re
 	tables_put(t->r, &t->par, s, p, stiffness, converged, last);
 }
 
+static struct edge edge;
+
+/* Returns 1 if the contact is mostly beyond the edge of the grid. */
+static int note_edge(const struct task *t)
+{
+	struct patch_grid grid = { t->par.nx, t->par.ny, t->par.dx, t->par.dy,
+		t->par.boundary == CONTACT_PERIODIC };
+	double share = contact_edge_load(&grid, t->p);
+
+	record_set(t->r, "edge_load", "%.17g", share);
+	return edge_load_note(&edge, share, t->r->realisation, sweep);
+}
+
 /* One contact and its row; returns 1 if it converged. */
 static int solve_step(const struct task *t, double target, int warm, int last,
 	struct contact_result *found)
@@ -297,7 +312,7 @@ static void clear_row(void *context, size_t row, int worker)
 	memset(t->p + row * nx, 0, nx * sizeof *t->p);
 }
 
-/* Solves one record in place; returns 1 if it converged. */
+/* Solves one record in place; returns 1 if it converged to a contact within the grid. */
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
 	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };
@@ -340,6 +355,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
+	converged &= !note_edge(&t);
 	doubt(&t.par, &found);
 	free(own_gap);
 	free(t.other);
@@ -389,6 +405,7 @@ int main(int argc, char **argv)
 		fields_write(out, &r, fields_more(in));
 		progress_within(1, part.last);
 	}
+	edge_load_warn(&edge, fields_name(in));
 	fields_done(out);
 	tables_done();
 	fields_close(in);
