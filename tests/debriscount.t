@@ -216,6 +216,7 @@ printf '# units: um min\ndiameter\ttime1\n50\t1\n150\t2\n' >um.tsv
 debriscount --classes 40um,100um um.tsv >um.out 2>err
 is "diameters and times are converted from the units of the table" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
 fails "units that change within a table" 1 'line 5: the units change' sh -c '(cat um.tsv; sed "s/um/mm/" um.tsv) | debriscount'
+fails "units that end within a table" 1 "line [0-9]*: the header before has no '# units'" sh -c '(cat um.tsv; grep -v "^#" um.tsv) | debriscount'
 fails "units that begin within a table" 1 'line 3: the units change' sh -c '(printf "diameter\ttime1\n5e-5\t1\n"; cat um.tsv) | debriscount'
 printf '# units: kg s\ndiameter\ttime1\n50\t1\n' >kg.tsv
 fails "a diameter in kilograms" 1 "column 'diameter' is in 'kg', want m" debriscount kg.tsv

@@ -41,7 +41,9 @@ struct table_in {
 	char **cell;
 	const char *blanks; /* separator of the cells */
 	int headed;         /* the table has a line of names */
-	int pending; /* the row read ahead by table_open() has not been returned yet */
+	int pending;  /* the row read ahead by table_open() has not been returned yet */
+	int stated;   /* units stand between the row before and this line */
+	int unstated; /* a further header came without units */
 	struct keys keys;    /* of comment lines */
 	struct keys reasons; /* of the lines "# doubtful:", each once, without values */
 	char *doubt;         /* the reasons as one text */
@@ -102,6 +104,10 @@ static void keep_key(struct table_in *t, char *comment)
 		(!table_key(t, "units") || strcmp(table_key(t, "units"), value) != 0))
 		die(EXIT_RUN, "%s: line %ld: the units change within the table", t->name,
 			t->number);
+	if (!strcmp(comment, "units")) {
+		t->stated = 1;
+		t->unstated = 0;
+	}
 	keys_set(&t->keys, comment, value);
 	if (!strcmp(comment, "doubtful") && (size_t)t->reasons.n < t->most_keys)
 		keys_set(&t->reasons, value, "");
@@ -430,6 +436,18 @@ static int is_header(const struct table_in *t)
 	return 1;
 }
 
+/* A table with units that is followed by one without: numbers of SI, or the same again?
+ */
+static void check_units(struct table_in *t)
+{
+	for (int i = 0; t->unstated && t->scale && i < t->ncolumns; i++)
+		if (t->scale[i].factor != 1)
+			die(EXIT_RUN,
+				"%s: line %ld: the header before has no '# units', that of the table before has",
+				t->name, t->number);
+	t->stated = t->unstated = 0;
+}
+
 int table_next(struct table_in *t)
 {
 	if (t->pending) {
@@ -447,9 +465,11 @@ int table_next(struct table_in *t)
 			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name,
 				t->number, t->ncolumns, n);
 		if (!is_header(t)) {
+			check_units(t);
 			t->rows++;
 			return 1;
 		}
+		t->unstated = !t->stated;
 		t->part++;
 	}
 }
