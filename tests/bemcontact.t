@@ -143,6 +143,10 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick coating behaves like a half-space" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "the record of a coated body has no contact modulus" "$(key estar thick.nrrd)" nan
+$layer --young 1000GPa --poisson 0.3 --coating 3um --coating-young 1GPa 2>err >soft.nrrd
+is "pressures beyond a tenth of the modulus of a soft layer are doubted" "$(grep -c 'contact modulus of 1.1 GPa: no solid is elastic' err)" 1
+$layer --young 1000GPa --poisson 0.3 --coating 3um --coating-young 100GPa 2>err >hard.nrrd
+is "those of a stiff one are not" "$(cat err)" ''
 fails "the material of no coating" 2 '\--coating-young requires --coating' \
 	bemcontact --estar 1GPa --pressure 1Pa --coating-young 1GPa
 fails "steps of load that no table shows" 2 '\--sweep requires --table' bemcontact --estar 1GPa --pressure 1Pa --sweep 3

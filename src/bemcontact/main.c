@@ -279,12 +279,22 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
+/* Contact modulus of what touches: of a soft layer, whatever bears it. */
+static double touching_modulus(const struct contact_par *par)
+{
+	double nu = coating.poisson;
+
+	if (!par->kernel)
+		return par->estar;
+	return fmin(par->estar, 1 / ((1 - nu * nu) / coating.young + coating.other));
+}
+
 /* Warns once of values that are possible but unlikely to be meant.  A number below 1000
  * without its unit may be one of MPa, up to 1 GPa; 1 kPa is the weight of 13 mm of steel.
  * The ideal strength of solids is about a tenth of their modulus. */
 static void doubt(const struct contact_par *par, const struct contact_result *found)
 {
-	double touching = found->pressure / found->area;
+	double touching = found->pressure / found->area, modulus = touching_modulus(par);
 	static int said;
 
 	if (said || !(found->pressure > 0))
@@ -293,10 +303,10 @@ static void doubt(const struct contact_par *par, const struct contact_result *fo
 	if (found->pressure < 1e3 && !isnan(press.pressure))
 		warn("--pressure %g Pa is very low: is %gMPa meant?", press.pressure,
 			press.pressure);
-	else if (touching > 0.1 * par->estar)
+	else if (touching > 0.1 * modulus)
 		warn("the mean pressure where the bodies touch, %.3g GPa, is above a tenth "
 		     "of the contact modulus of %.3g GPa: no solid is elastic there%s",
-			1e-9 * touching, 1e-9 * par->estar,
+			1e-9 * touching, 1e-9 * modulus,
 			par->hardness > 0 ? "" : ", specify --hardness");
 	else
 		said = 0;
