@@ -230,4 +230,9 @@ roughgen -n 64 -q 0 -S st >/dev/null
 is "a flat surface takes no transform" "$(value transforms st)" 0
 roughgen -n 64 -q 1um -S st >/dev/null
 is "a rough surface takes one transform" "$(value transforms st)" 1
+# The longest wave of a periodic side has a 1/e length of 0.19 of it.
+roughgen -n 16x32 -L 1mmx2mm -l 0.19mmx0.39mm >/dev/null 2>err
+is "correlation lengths up to a fifth of the sides are silent" "$(cat err)" ''
+roughgen -n 16x32 -L 1mmx2mm -l 0.19mmx0.5mm >/dev/null 2>err
+is "longer ones are not reached, which is said" "$(grep -c -e '--corr 0.0005m is above a fifth of the side of 0.002m' err)" 1
 done_testing
