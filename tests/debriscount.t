@@ -207,6 +207,8 @@ fails "codes of no volume" 2 'requires --flow or --volume' debriscount --output 
 fails "a trend without periods" 2 'requires --period' debriscount --output trend six.tsv
 fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscount --alarm 1:2 six.tsv
 fails "a volume by the period" 2 'requires --flow' debriscount --volume 1L --period 1s six.tsv
+printf 'time1\ttime2\tdiameter\n-inf\t1\t5e-5\n' >endless.tsv
+fails "an infinite time before a finite one" 1 'time1 is -inf, want a time' debriscount endless.tsv
 fails "no times to part periods by" 1 'no column of times' debriscount --period 1s bottle.tsv
 fails "an empty stream" 1 'empty, want table' debriscount
 fails "no particle and no duration" 1 'with --duration' debriscount none.tsv

@@ -219,8 +219,15 @@ static void read_particles(
 	open_summary(&summary);
 	for (; more; more = table_next(t)) {
 		struct particle_row s = { table_whole(t, cr, 0, 1e15),
-			table_whole(t, cs, 1, 1e6), table_positive(t, cd),
+			table_whole(t, cs, 1, 1e6), table_diameter(t, cd),
 			table_positive(t, cv), table_part(t) };
+
+		/* A litre: of the largest diameter, in a few times its sphere. */
+		if (s.volume > 1e-3)
+			die(EXIT_RUN,
+				"%s: line %ld: volume is %g m3, want m3 or a '# units:' line "
+				"above the header that names the unit",
+				table_name(t), table_line(t), s.volume);
 
 		read_summary(&summary, e, s.realisation);
 		check(e, ensemble_add(e, &s));
