@@ -162,9 +162,11 @@ static enum num_status descend(const struct sample *m, int held, double p[2], do
 {
 	/* Steps of half a unit cross FAR in 40; 500 leave room for steps that were
 	 * halved. Where the slope is 1e-7 the value exceeds its minimum by some 1e-14,
-	 * its rounding; Newton's step from there leaves the square of the slope. */
+	 * its rounding; Newton's step from there leaves the square of the slope.  An end
+	 * of an interval is determined to the root of that rounding. */
 	enum { STEPS = 500 };
-	static const double flat = 1e-7, longest = 0.5;
+	static const double longest = 0.5;
+	double flat = held < 0 ? 1e-7 : 1e-5;
 	double here = minus_log(m, p[0], p[1]), g[2], step[2];
 
 	for (int i = 0; i < STEPS && !is_far(m, p); i++) {
@@ -201,22 +203,38 @@ static enum num_status descend(const struct sample *m, int held, double p[2], do
 	return NUM_DOMAIN;
 }
 
+/* What the negative log likelihood over n is at least with parameter i held, and there
+ * the other one.  With another shape the scale is sought over the width of that. */
+static double least_minus_log(const struct sample *m, int i, double p[2])
+{
+	struct sample scaled = *m;
+	double q[2] = { p[0], p[1] }, h[3], ratio;
+
+	if (i == 0)
+		scaled.stretch = exp(p[0]);
+	ratio = scaled.stretch / m->stretch;
+	q[1] *= ratio;
+	descend(&scaled, i, q, h);
+	p[1 - i] = i == 0 ? q[1] / ratio : q[0];
+	return minus_log(&scaled, q[0], q[1]);
+}
+
 /* An end of the interval of parameter i, on the side of this deviation from the best
  * values: where the likelihood, at its maximum over the other parameter, has fallen by
  * fall from its own.  INFINITY with the sign of the side where it never does. */
 static double interval_end(const struct sample *m, const double best[2], int i,
 	double deviation, double fall)
 {
-	double limit = minus_log(m, best[0], best[1]) + fall, h[3];
+	double limit = minus_log(m, best[0], best[1]) + fall;
+	double far = i == 0 ? FAR : FAR * fmax(m->stretch, 1);
 	double inside = best[i], below = -fall, outside, above;
 	double p[2] = { best[0], best[1] };
 
 	for (p[i] += deviation;; p[i] = best[i] + 2 * (p[i] - best[i])) {
-		if (is_far(m, p))
+		if (!(fabs(p[i] - best[i]) < far))
 			return copysign(INFINITY, deviation);
 		outside = p[i];
-		descend(m, i, p, h);
-		above = minus_log(m, p[0], p[1]) - limit;
+		above = least_minus_log(m, i, p) - limit;
 		if (!(above < 0))
 			break;
 		inside = outside;
@@ -229,8 +247,7 @@ static double interval_end(const struct sample *m, const double best[2], int i,
 		if (!(fabs(at - inside) < fabs(outside - inside)))
 			at = 0.5 * (inside + outside);
 		p[i] = at;
-		descend(m, i, p, h);
-		value = minus_log(m, p[0], p[1]) - limit;
+		value = least_minus_log(m, i, p) - limit;
 		if (value < 0) {
 			above *= 0.5;
 			inside = at;
