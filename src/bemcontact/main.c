@@ -114,13 +114,9 @@ static struct contact *solver_for(const struct record *r, const struct contact_p
 static void put_results(struct record *r, const struct contact_par *par,
 	const struct contact_result *s, int converged)
 {
-	/* What an earlier contact of this record left, and this one may not set again. */
-	static const char *const old[] = { "hardness", "coating", "plastic_area",
-		"friction", "tangential_load", "tangential_displacement", "stick_area",
-		"flow_depth", "flow_volume", NULL };
-
-	for (int k = 0; old[k]; k++)
-		record_drop_key(r, old[k]);
+	press_forget(r);
+	record_drop_key(r, "hardness");
+	record_drop_key(r, "coating");
 	press_record(r, par);
 	if (par->kernel) {
 		/* The key of the contact modulus does not apply to this kernel. */
