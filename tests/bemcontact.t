@@ -77,7 +77,7 @@ sh -c "$(key cmd free.nrrd)" >replay.nrrd
 same "the recorded command reproduces the stream" free.nrrd replay.nrrd
 
 fails "not converged: status 3" 3 'record 1: not converged: optimality gap .* after 2 iterations' \
-	sh -c "$solve --pressure 200MPa --max-iterations 2 h.f64 >poor.nrrd"
+	sh -c "$solve --boundary periodic --pressure 200MPa --max-iterations 2 h.f64 >poor.nrrd"
 is "the record states that it did not converge" "$(key converged poor.nrrd)" no
 is "without load there is no pressure and no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
@@ -143,6 +143,10 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick coating behaves like a half-space" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "the record of a coated body has no contact modulus" "$(key estar thick.nrrd)" nan
+$layer --young 1000GPa --poisson 0.3 --coating 3um --coating-young 1GPa 2>err >soft.nrrd
+is "pressures beyond a tenth of the modulus of a soft layer are doubted" "$(grep -c 'contact modulus of 1.1 GPa: no solid is elastic' err)" 1
+$layer --young 1000GPa --poisson 0.3 --coating 3um --coating-young 100GPa 2>err >hard.nrrd
+is "those of a stiff one are not" "$(cat err)" ''
 fails "the material of no coating" 2 '\--coating-young requires --coating' \
 	bemcontact --estar 1GPa --pressure 1Pa --coating-young 1GPa
 fails "steps of load that no table shows" 2 '\--sweep requires --table' bemcontact --estar 1GPa --pressure 1Pa --sweep 3
@@ -213,4 +217,26 @@ done
 near "the residual depth is the plastic depth" "$(key flow_depth flowed.nrrd)" "$(paste height.txt residual.txt |
 	awk '{ d = $1 - $2; if (d > m) m = d } END { print m }')" 1e-7
 fails "unloading without a table" 2 'unload requires --table' bemcontact --pressure 1Pa --estar 1GPa --unload 3
+# A ball of 1 mm at a place of a free grid of 41 x 31 cells of 2 by 3 um, from X to Y cells.
+ball() {
+	perl -e 'for my $y (0 .. 30) { for my $x (0 .. 40) {
+		print pack "d<", -(($x - $ARGV[0])**2 * 4e-12 + ($y - $ARGV[1])**2 * 9e-12) / 2e-3 } }' "$1" "$2" >ball.f64
+	shift 2
+	bemcontact --raw 41x31 --pixel 2umx3um --estar 100GPa --load 0.2N "$@" ball.f64 >ball.nrrd 2>err
+}
+status=0
+ball 20 15 --table ball.tsv || status=$?
+is "a contact within a free grid has no load at its edge" "$status $(key edge_load ball.nrrd) $(column edge_load ball.tsv) $(cat err)" "0 0 0 "
+ball 37 15 --table ball.tsv || status=$?
+is "load at the edge gives a warning" "$status $(grep -c 'ball.f64: 1 contacts .* cells, worst [0-9]* % (.*): use a larger area' err)" "0 1"
+is "the record and the table state it" "$(key edge_load ball.nrrd)" "$(column edge_load ball.tsv)"
+ok "it is between 5 and 50 %" awk -v e="$(key edge_load ball.nrrd)" 'BEGIN { exit !(e > 0.05 && e < 0.5) }'
+ball 60 15 || status=$?
+is "status 3 where the edge carries most of the load" "$status $(grep -c 'worst 100 %' err)" "3 1"
+status=0
+ball 60 15 --boundary periodic || status=$?
+is "a periodic surface has no edge" "$status $(key edge_load ball.nrrd) $(cat err)" "0 0 "
+head -c 10168 /dev/zero >flat.f64
+bemcontact --raw 41x31 --pixel 1um --boundary periodic --estar 100GPa --pressure 1MPa flat.f64 2>err >flat.nrrd || status=$?
+is "nor has a flat one in full contact" "$status $(key area flat.nrrd) $(key edge_load flat.nrrd) $(cat err)" "0 1 0 "
 done_testing

@@ -207,6 +207,8 @@ fails "codes of no volume" 2 'requires --flow or --volume' debriscount --output 
 fails "a trend without periods" 2 'requires --period' debriscount --output trend six.tsv
 fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscount --alarm 1:2 six.tsv
 fails "a volume by the period" 2 'requires --flow' debriscount --volume 1L --period 1s six.tsv
+printf 'time1\ttime2\tdiameter\n-inf\t1\t5e-5\n' >endless.tsv
+fails "an infinite time before a finite one" 1 'time1 is -inf, want a time' debriscount endless.tsv
 fails "no times to part periods by" 1 'no column of times' debriscount --period 1s bottle.tsv
 fails "an empty stream" 1 'empty, want table' debriscount
 fails "no particle and no duration" 1 'with --duration' debriscount none.tsv
@@ -216,6 +218,7 @@ printf '# units: um min\ndiameter\ttime1\n50\t1\n150\t2\n' >um.tsv
 debriscount --classes 40um,100um um.tsv >um.out 2>err
 is "diameters and times are converted from the units of the table" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
 fails "units that change within a table" 1 'line 5: the units change' sh -c '(cat um.tsv; sed "s/um/mm/" um.tsv) | debriscount'
+fails "units that end within a table" 1 "line [0-9]*: the header before has no '# units'" sh -c '(cat um.tsv; grep -v "^#" um.tsv) | debriscount'
 fails "units that begin within a table" 1 'line 3: the units change' sh -c '(printf "diameter\ttime1\n5e-5\t1\n"; cat um.tsv) | debriscount'
 printf '# units: kg s\ndiameter\ttime1\n50\t1\n' >kg.tsv
 fails "a diameter in kilograms" 1 "column 'diameter' is in 'kg', want m" debriscount kg.tsv

@@ -191,7 +191,7 @@ debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit
 is 'an audit of a wrong surrogate fails with status 3' "$? $(grep -c '^# doubtful: the surrogate' rows)" '3 1'
 like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within their intervals'
 
-fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
+fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --crown auto --count 5 |
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
 # One of the contacts is a first iterate: surrogate, table and exit statuses say so.
 {

@@ -200,6 +200,20 @@ is "a step that shed nothing counts if the summary has it" \
 	"$(debrisstat --step 1:2 --summary both.tsv first.tsv | awk '$1 == "volume_per_step" { print $2 }')" 5e-16
 fails "steps after the last of the summary" 1 'first.tsv has no step after 2$' \
 	debrisstat --step 3 --summary both.tsv first.tsv
+printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\t20\t8e-15\t1\n' >bare.tsv
+fails "diameters in micrometres without a unit" 1 "bare.tsv: line 2: diameter is 20 m, want metres or a '# units:' line" debrisstat bare.tsv
+printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\t20e-6\t8000\t1\n' >bare.tsv
+fails "volumes in cubic micrometres without a unit" 1 "bare.tsv: line 2: volume is 8000 m3, want m3 or a '# units:' line" debrisstat bare.tsv
+areas() { # of the second surface, m2
+	printf '# nominal_area: 1e-8 m2\n# step_distance: 1e-4 m\nrealisation\tstep\tdiameter\tvolume\taspect\n'
+	printf '0\t1\t2e-5\t8e-15\t1\n# cmd: b\n# nominal_area: %s m2\n1\t1\t3e-5\t9e-15\t1\n' "$1"
+}
+areas 1e-8 >alike.tsv
+areas 2e-8 >mixed.tsv
+ok "studies of one area are compared" sh -c 'debrisstat --compare alike.tsv alike.tsv >out'
+fails "surfaces of two areas have no common life" 1 "mixed.tsv: line 7: surfaces of 1e-08 and of 2e-08 m2 in one study" \
+	debrisstat --compare mixed.tsv alike.tsv
+ok "without --compare the area does not matter" sh -c 'debrisstat mixed.tsv >out'
 fails "a truncation without limits" 2 '\--truncated requires --diameter' debrisstat --truncated first.tsv
 for c in "bin 1um:fits" "aspects 1,2:sizes" "growth step:steps" "confidence 0.9:aspects" "bootstrap 9:sizes" \
 	"truncated --diameter 1um:1mm:aspects"; do

@@ -2,6 +2,12 @@
 # delaynet: training by seed, scores beside the levels, files, errors
 . "$(dirname "$0")/tap.sh"
 
+# A network edited by sed, with the checksum of what it now is: gzip ends with it, reversed.
+edited() {
+	sed "$1;/^end /d" "$2" >body
+	gzip -c body | tail -c 8 | od -An -tx1 -N4 | awk '{ print "end crc32 " $4 $3 $2 $1 }' | cat body -
+}
+
 small="--columns 40 --layers 6 --count 200 --batch 20"
 
 # shellcheck disable=SC2086
@@ -12,7 +18,7 @@ small="--columns 40 --layers 6 --count 200 --batch 20"
 	delaynet $small --epochs 30 --repetition 1 >b.net
 	ok "another repetition gives other weights" sh -c '! cmp -s a.net b.net'
 	is "the file states its format" "$(sed -n '1p;3,5p' a.net | tr '\n' ';')" \
-		"wearpipe-network 1;purpose delays;input 1 2 40;layers 6:tanh 3:linear;"
+		"wearpipe-network 2;purpose delays;input 1 2 40;layers 6:tanh 3:linear;"
 	is "the file has as many weights as declared" "$(sed '/^weights/,/^end/!d;/^[we]/d' a.net | wc -w)" \
 		"$(sed -n 's/^weights //p' a.net)"
 
@@ -82,10 +88,10 @@ fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" 
 	delaynet --task score tiny.net
 fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \
 	delaynet --task score --model pulses a.net
-sed 's/^purpose arrivals/purpose delays/' tiny.net >lying.net
+edited 's/^purpose arrivals/purpose delays/' tiny.net >lying.net
 fails "layers of arrivals for delays" 1 "lying.net: inputs of 2 x 1 x 128 and 34 outputs do not suit delays" \
 	delaynet --task score lying.net
-sed 's/^purpose delays/purpose arrivals/' a.net >lying.net
+edited 's/^purpose delays/purpose arrivals/' a.net >lying.net
 fails "layers of delays for arrivals" 1 "lying.net: inputs of 1 x 2 x 40 and 3 outputs do not suit arrivals" \
 	delaynet --task score --model pulses lying.net
 fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
@@ -98,6 +104,15 @@ fails "a missing network" 1 "no.net: No such file" delaynet --task score no.net
 fails "a signal for a network" 1 "x.snd: line 1:" delaynet --task score x.snd
 head -c 3000 a.net >cut.net
 fails "a network cut short" 1 "cut.net: line [0-9]*: ends early" delaynet --task score cut.net
+edited '' a.net >whole.net
+same "the checksum is the CRC-32 of the lines before it" whole.net a.net
+sed '8s/1/2/' a.net >bad.net
+fails "a weight that was altered" 1 "bad.net: line [0-9]*: want 'end crc32 [0-9a-f]*', got 'end crc32 [0-9a-f]*': damaged or edited" \
+	delaynet --task score --columns 40 bad.net
+sed 's/^# cmd: delay/# cmd: decay/' a.net >bad.net
+fails "a comment that was altered" 1 "damaged or edited" delaynet --task score --columns 40 bad.net
+sed 's/^end .*/end/' a.net >bad.net
+fails "a network without its checksum" 1 "damaged or edited" delaynet --task score --columns 40 bad.net
 sed 's/^input 1 2 40/input 1 2 41/' a.net >bad.net
 fails "weights that do not suit" 1 "bad.net: line 6: the layers have" delaynet --task score bad.net
 sed '8s/^[^ ]*/nan/' a.net >bad.net

@@ -44,7 +44,7 @@ is 'ensembles that are not consecutive form a group' \
 	"$(sed -n 's/^# cmd: //p' steps.tsv | grep -o -e '--first [^|]*| b' -e '^{ ' -e '; }.*')" \
 	"$(printf '%s\n' '{ ' '--first 0 --count 4 | b' '--first 7 --count 2 | b' '; } | debrisstat --output steps')"
 rebuilt steps.tsv
-printf '# cmd: sensorsim --first 0\nrealisation\tstep\tdiameter\tvolume\taspect\n0\t1\t1\t1\t1\n' >r0
+printf '# cmd: sensorsim --first 0\nrealisation\tstep\tdiameter\tvolume\taspect\n0\t1\t1e-5\t1e-15\t1\n' >r0
 is 'only realisations of surfaces are merged' \
 	"$(sed 's/^0/1/; s/first 0/first 1/' r0 | cat r0 - | debrisstat | sed -n 's/^# cmd: //p')" \
 	'{ sensorsim --first 0; sensorsim --first 1; } | debrisstat'

@@ -74,7 +74,8 @@ low, median, high = wearpipe.remaining_life(t, 0.1 * t + 0.01 * np.sin(17 * t), 
 print("life", low < median < high, abs(median - 41) < 4)
 for wrong in (lambda: wearpipe.press(z, dx, -1, 115e9), lambda: wearpipe.surface(0, 1e-3),
               lambda: wearpipe.remaining_life([0, 1], [0, 1], 5.0),
-              lambda: wearpipe.stress(p, dx, -1.0)):
+              lambda: wearpipe.stress(p, dx, -1.0),
+              lambda: wearpipe.roughness(np.where(z == z.max(), np.nan, z), dx)):
     try:
         wrong(); print("accepted")
     except wearpipe.Error as e:
@@ -107,5 +108,5 @@ is 'the particles in a record are those of duet to the last bit' "$(got separati
 is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['channels with nothing in common: no pa']"
 is 'a dead sensor is named' "$(got dead)" 'channel 1 is constant: a dead sensor'
 is 'the remaining life of a straight line is right' "$(got life)" 'True True'
-is 'an impossible input raises an exception' "$(grep -c refused got)" 4
+is 'an impossible input raises an exception' "$(grep -c refused got)" 5
 done_testing

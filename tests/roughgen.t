@@ -230,4 +230,18 @@ roughgen -n 64 -q 0 -S st >/dev/null
 is "a flat surface takes no transform" "$(value transforms st)" 0
 roughgen -n 64 -q 1um -S st >/dev/null
 is "a rough surface takes one transform" "$(value transforms st)" 1
+# The longest wave of a periodic side has a 1/e length of 0.19 of it.
+roughgen -n 16x32 -L 1mmx2mm -l 0.19mmx0.39mm >/dev/null 2>err
+is "correlation lengths up to a fifth of the sides are silent" "$(cat err)" ''
+roughgen -n 16x32 -L 1mmx2mm -l 0.19mmx0.5mm >/dev/null 2>err
+is "longer ones are not reached, which is said" "$(grep -c -e '--corr 0.0005m is above a fifth of the side of 0.002m' err)" 1
+# Keys of a contact that are not those of processed heights.
+roughgen -n 32 -L 0.1mm -q 0.5um -l 8um | bemcontact --boundary periodic --pressure 20MPa -E 210GPa >periodic.nrrd 2>err
+keys() { strings -n 3 "$1" | sed -n 's/^\([a-z_]*\):=.*/\1/p' | grep -xE 'estar|boundary|load|area|approach|converged|edge_load' | tr '\n' ' '; }
+roughgen --resample 16 periodic.nrrd >coarse.nrrd
+is "processed heights keep boundary and modulus, but no results of a contact" "$(keys coarse.nrrd)" "estar boundary "
+roughgen --crop 4:4:16:16 periodic.nrrd >piece.nrrd
+is "a piece of a periodic surface is not periodic" "$(keys piece.nrrd)" "estar "
+roughgen --s-filter 10um --ends crop periodic.nrrd >inner.nrrd
+is "nor what the ends of a filter leave of it" "$(keys inner.nrrd)" "estar "
 done_testing

@@ -321,4 +321,20 @@ fails "positions without a unit" 1 'does not state the spacing: specify --pixel'
 	surfimport --profile --height-unit 1um places.txt
 is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
 fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
+# What would be left out as a heading, or is of another type.
+torn() {
+	printf '%b' "$2" >torn.txt
+	fails "$1" 1 "line 1: not a row of numbers" surfimport --pixel 1um --height-unit 1um torn.txt
+}
+torn 'a first row with one cell of two that is no number' '1x 2\n3 4\n'
+torn 'a first row with a minus sign of another alphabet' '\0342\0210\0222\0061 2\n3 4\n'
+torn 'a first row with words behind it' '1 2 # left\n3 4\n'
+printf 'left right\n1 2\n3 4\n' >headed.txt
+is 'a heading of words is left out' "$(surfimport --pixel 1um --height-unit 1um headed.txt | records | grep '^1' | cut -f 5,6)" "2	2"
+perl -e 'print pack "d<*", map { 1e-6 * sin $_ } 0 .. 99' >doubles
+for type in 'float64 --big-endian' int64 'float32 --size 20x10'; do
+	# shellcheck disable=SC2086 # words
+	fails "heights of another type: $type" 1 'heights of up to .* m: want another type, byte order or unit' \
+		surfimport --format raw --size 10x10 --pixel 1um --height-unit 1m --type $type doubles
+done
 done_testing

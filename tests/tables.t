@@ -54,6 +54,28 @@ refuse 'commas and blanks' "bad: no column .y. among .*: 'sigconvert --output ta
 refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is truncated' 't\ty\n0\t1\n1\t2'
 refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
 
+# Lines that say why a table is doubtful: all that differ are quoted, in their order, and passed on.
+reasons() {
+	printf 't\ty\n0\t1\n'
+	printf '# doubtful: %s\n1\t2\n' "$1"
+	shift
+	for why; do printf '# doubtful: %s\n' "$why"; done
+	printf '2\t4\n'
+}
+reasons a b a c >three
+status=0
+aopf --threshold 9 three >out 2>err || status=$?
+is 'of several reasons for doubt all that differ are quoted' "$status $(cat err)" '3 aopf: three: doubtful by its own account: a; b; c'
+is 'they are passed on as one' "$(grep '^# doubtful' out)" '# doubtful: a; b; c'
+reasons $(seq 1 1500) >many
+aopf --threshold 9 many 2>err >out || status=$?
+is 'of many reasons eight are quoted, up to a thousand are counted' "$(cat err)" \
+	'aopf: many: doubtful by its own account: 1; 2; 3; 4; 5; 6; 7; 8; and at least 992 more reasons'
+printf 'time1\tdiameter\n1\tnan\n# doubtful: pulses differ\n' >both
+wear-volume --period 1s both >out 2>err || status=$?
+is 'reasons of a program stand beside those of its input' "$(sed -n 's/^# doubtful: //p' out | tr '\n' ';')" \
+	'rows without a diameter;pulses differ;'
+
 # Other tools, as the manual of the streams has them, where they are installed: the mean of
 # a column of a table of two realisations, whose provenance stands in its middle.
 printf '# cmd: a\n# units: 1 m3\nstep\tvolume\n1\t2\n# cmd: b\n2\t4\n' >ours

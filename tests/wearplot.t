@@ -32,11 +32,28 @@ is 'a name that ends in .png gives a PNG' "$(head -c 4 a.png | tail -c 3)" PNG
 
 # No pulse of one frame is lost in the envelope of a long record.
 perl -e 'print ".snd", pack("N5", 24, 0xffffffff, 7, 10000, 1);
-	print reverse pack("d", $_ == 54321 ? 3 : 0) for 0 .. 99999' >spike.au
-picture 'an envelope keeps a spike of one frame' '3' spike.au
+	print pack("d>", $_ == 54321 ? 3 : 0) for 0 .. 99999' >spike.au
+picture 'an envelope keeps a spike of 3 V in one frame' '[^0-9]0[^0-9]*2[^0-9]*4[^0-9]*0[^0-9]*1[^0-9]' spike.au
+
+perl -e 'print ".snd", pack("N5", 24, 0xffffffff, 7, 1000, 1);
+	print pack("d>", $_ == 7 ? 9**9**9 : $_ == 8 ? -sin(9**9**9) : 1) for 0 .. 99' >holes.au
+picture 'a signal with holes is drawn' 'channel 1' holes.au
+is 'its frames without numbers are counted' "$(cat err)" 'wearplot: holes.au: 2 frames are no numbers and left out'
 
 printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
 picture 'a series is drawn over time' 'observed' series.tsv
+printf 't\ty\n0\t1\n3600\tnan\n7200\t3\n10800\tNA\nt\ty\n14400\t4\n' >gaps.tsv
+picture 'a series with gaps is drawn' 'observed' gaps.tsv
+is 'rows that are left out are counted' "$(cat err)" 'wearplot: gaps.tsv: 2 of 5 rows have no y and are left out'
+printf 't\ty\n0\t1\n3600\thigh\n7200\t3\n' >words.tsv
+fails 'a word among numbers is refused' 1 "words.tsv: line 3: y: 'high' is not a number" wearplot words.tsv
+printf 't\ty\n0\t1\n3600\t2mm\n7200\t3\n' >words.tsv
+fails 'a number with a unit is refused' 1 "words.tsv: line 3: y: '2mm' is not a number" wearplot words.tsv
+printf 'diameter\n1e-5\nnan\nlarge\n' >words.tsv
+fails 'a word among diameters is refused' 1 "words.tsv: line 4: diameter: 'large' is not a number" wearplot words.tsv
+printf 'diameter\n1e-5\nnan\n2e-5\n' >gaps.tsv
+picture 'particles without diameter are left out' 'diameter, um' gaps.tsv
+is 'and counted' "$(cat err)" 'wearplot: gaps.tsv: 1 of 3 rows have no diameter and are left out'
 picture 'a series is drawn with its threshold' 'threshold' --end 5 series.tsv
 printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
 picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv

@@ -146,3 +146,24 @@ enum num_status contact_quantiles(
 	free(sorted);
 	return NUM_OK;
 }
+
+double contact_edge_load(const struct patch_grid *grid, const double *pressure)
+{
+	double sum = 0, edge = 0;
+
+	if (grid->periodic)
+		return 0;
+	for (int y = 0; y < grid->ny; y++) {
+		const double *row = pressure + (size_t)y * (size_t)grid->nx;
+		double in_row = 0;
+
+		for (int x = 0; x < grid->nx; x++)
+			in_row += row[x];
+		sum += in_row;
+		if (y == 0 || y == grid->ny - 1 || grid->nx < 3)
+			edge += in_row;
+		else
+			edge += row[0] + row[grid->nx - 1];
+	}
+	return sum > 0 ? edge / sum : 0;
+}

@@ -38,6 +38,9 @@ enum num_status contact_patches(const struct patch_grid *grid, const double *pre
 double contact_corrected_area(
 	const struct patch_grid *grid, double area, double perimeter);
 
+/* Share of the load on the outermost cells; 0 on a periodic grid, which has no edge. */
+double contact_edge_load(const struct patch_grid *grid, const double *pressure);
+
 /* Quantiles of the pressure of the cells in contact at the levels part, interpolated.
  * nan without contact. */
 enum num_status contact_quantiles(const double *pressure, size_t cells,

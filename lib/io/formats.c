@@ -1,8 +1,8 @@
 #include "io/formats.h"
 #include "cli/msg.h"
-#include "io/bytes.h"
-#include "io/crc32.h"
 #include "io/kinds.h"
+#include "num/bytes.h"
+#include "num/crc32.h"
 #include "num/lanes.h"
 #include <float.h>
 #include <math.h>

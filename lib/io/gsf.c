@@ -2,7 +2,7 @@
 #include "io/gsf.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
-#include "io/bytes.h"
+#include "num/bytes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

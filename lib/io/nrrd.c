@@ -8,8 +8,8 @@
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
-#include "io/bytes.h"
-#include "io/crc32.h"
+#include "num/bytes.h"
+#include "num/crc32.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

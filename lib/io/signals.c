@@ -8,11 +8,11 @@
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
-#include "io/bytes.h"
-#include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/kinds.h"
+#include "num/bytes.h"
+#include "num/crc32.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>

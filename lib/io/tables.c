@@ -5,10 +5,10 @@
 #include "cli/text.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"
-#include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/keys.h"
+#include "num/crc32.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,6 +16,9 @@
 #include <string.h>
 
 enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a table */
+/* Reasons for doubt that are quoted: all that one record has, and some lines of a
+ * terminal where each of many realisations has one of its own. */
+enum { REASONS_QUOTED = 8 };
 
 static const char promise[] = "# stream: " ENDS_PROMISE "\n";
 static const char end_line[] = "# end: ";
@@ -38,8 +41,12 @@ struct table_in {
 	char **cell;
 	const char *blanks; /* separator of the cells */
 	int headed;         /* the table has a line of names */
-	int pending; /* the row read ahead by table_open() has not been returned yet */
-	struct keys keys; /* of comment lines */
+	int pending;  /* the row read ahead by table_open() has not been returned yet */
+	int stated;   /* units stand between the row before and this line */
+	int unstated; /* a further header came without units */
+	struct keys keys;    /* of comment lines */
+	struct keys reasons; /* of the lines "# doubtful:", each once, without values */
+	char *doubt;         /* the reasons as one text */
 	table_comment_taker *take;
 	void *context; /* of take */
 	struct upstream upstream;
@@ -97,7 +104,13 @@ static void keep_key(struct table_in *t, char *comment)
 		(!table_key(t, "units") || strcmp(table_key(t, "units"), value) != 0))
 		die(EXIT_RUN, "%s: line %ld: the units change within the table", t->name,
 			t->number);
+	if (!strcmp(comment, "units")) {
+		t->stated = 1;
+		t->unstated = 0;
+	}
 	keys_set(&t->keys, comment, value);
+	if (!strcmp(comment, "doubtful") && (size_t)t->reasons.n < t->most_keys)
+		keys_set(&t->reasons, value, "");
 	free(value);
 	if ((size_t)t->keys.n > t->most_keys)
 		die(EXIT_RUN, "%s: line %ld: more than %zu keys", t->name, t->number,
@@ -423,6 +436,18 @@ static int is_header(const struct table_in *t)
 	return 1;
 }
 
+/* A table with units that is followed by one without: numbers of SI, or the same again?
+ */
+static void check_units(struct table_in *t)
+{
+	for (int i = 0; t->unstated && t->scale && i < t->ncolumns; i++)
+		if (t->scale[i].factor != 1)
+			die(EXIT_RUN,
+				"%s: line %ld: the header before has no '# units', that of the table before has",
+				t->name, t->number);
+	t->stated = t->unstated = 0;
+}
+
 int table_next(struct table_in *t)
 {
 	if (t->pending) {
@@ -440,9 +465,11 @@ int table_next(struct table_in *t)
 			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name,
 				t->number, t->ncolumns, n);
 		if (!is_header(t)) {
+			check_units(t);
 			t->rows++;
 			return 1;
 		}
+		t->unstated = !t->stated;
 		t->part++;
 	}
 }
@@ -526,9 +553,25 @@ void table_one_unit(struct table_in *t)
 			t->name, t->number, t->cell[column], t->unit);
 }
 
-const char *table_doubted(const struct table_in *t)
+const char *table_doubt(struct table_in *t)
 {
-	const char *why = table_key(t, "doubtful");
+	int n = t->reasons.n;
+
+	if (n == 0)
+		return NULL;
+	free(t->doubt);
+	t->doubt = xstrdup(t->reasons.key[0]);
+	for (int i = 1; i < n && i < REASONS_QUOTED; i++)
+		t->doubt = xappend(t->doubt, "; %s", t->reasons.key[i]);
+	if (n > REASONS_QUOTED)
+		t->doubt = xappend(t->doubt, "; and %s%d more reasons",
+			(size_t)n < t->most_keys ? "" : "at least ", n - REASONS_QUOTED);
+	return t->doubt;
+}
+
+const char *table_doubted(struct table_in *t)
+{
+	const char *why = table_doubt(t);
 
 	if (why)
 		warn("%s: doubtful by its own account: %s", table_name(t), why);
@@ -544,6 +587,8 @@ void table_close(struct table_in *t)
 	free(t->scale);
 	free(t->cell);
 	keys_free(&t->keys);
+	keys_free(&t->reasons);
+	free(t->doubt);
 	upstream_free(&t->upstream);
 	free(t->unit);
 	free(t->line);

@@ -59,9 +59,10 @@ const char *table_text(const struct table_in *t, int column);
 /* Dies if the present row has another value than the first in the column unit, if there
  * is one. */
 void table_one_unit(struct table_in *t);
-/* At the end: why the table is doubtful, as its comment "# doubtful: why" says, with a
- * warning; NULL if it is not. */
-const char *table_doubted(const struct table_in *t);
+/* At the end: why the table is doubtful, as its comments "# doubtful: why" say, all that
+ * differ as one text; NULL if it is not.  Valid until the next call and table_close(). */
+const char *table_doubt(struct table_in *t);
+const char *table_doubted(struct table_in *t); /* the same with a warning */
 void table_close(struct table_in *t);
 
 /* columns: names separated by blanks, "t y state"; units: one for each column, "1" for

@@ -1,10 +1,12 @@
 /* netfile.c - networks as text: the layers in one line, the weights in one file */
 #include "net/netfile.h"
+#include "num/crc32.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+static const char first_line[] = "wearpipe-network 2", end_line[] = "end crc32 %08lx";
 static const char *const activations[] = { "linear", "tanh", "sigmoid", "relu" };
 
 /* Number from 1 to 2^20 at *s, which moves behind it; 0 if there is none. */
@@ -121,13 +123,13 @@ static void write_layer(FILE *f, const struct network_layer *l)
 	fprintf(f, ":%s", activations[l->activation]);
 }
 
-void netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd)
+static void write_text(FILE *f, struct network *net, const char *purpose, const char *cmd)
 {
 	struct network_shape in = network_input(net);
 	const network_real *w = network_weights(net);
 	size_t n = network_weight_count(net);
 
-	fprintf(f, "wearpipe-network 1\n");
+	fprintf(f, "%s\n", first_line);
 	if (cmd)
 		fprintf(f, "# cmd: %s\n", cmd);
 	fprintf(f, "purpose %s\ninput %d %d %d\nlayers", purpose, in.channels, in.height,
@@ -137,7 +139,28 @@ void netfile_write(FILE *f, struct network *net, const char *purpose, const char
 	fprintf(f, "\nweights %zu\n", n);
 	for (size_t i = 0; i < n; i++)
 		fprintf(f, "%.9g%c", w[i], i % 8 == 7 || i == n - 1 ? '\n' : ' ');
-	fprintf(f, "end\n");
+}
+
+enum num_status netfile_write(
+	FILE *f, struct network *net, const char *purpose, const char *cmd)
+{
+	char *text = NULL;
+	size_t n;
+	FILE *memory = open_memstream(&text, &n);
+	int whole = 0;
+
+	if (memory) {
+		write_text(memory, net, purpose, cmd);
+		whole = !ferror(memory);
+		whole &= !fclose(memory);
+	}
+	if (whole) {
+		fwrite(text, 1, n, f);
+		fprintf(f, end_line, (unsigned long)crc32_add(0, text, n));
+		putc('\n', f);
+	}
+	free(text);
+	return whole ? NUM_OK : NUM_MEMORY;
 }
 
 struct reader {
@@ -146,6 +169,7 @@ struct reader {
 	size_t size;
 	struct netfile *file;
 	char *why;
+	uint32_t checksum, before; /* of the lines so far, and of those before the last */
 };
 
 /* The next line that is not a comment, without its newline; NULL with why at the end. */
@@ -162,6 +186,8 @@ static char *next_line(struct reader *r, const char *want)
 			snprintf(r->why, NETFILE_TEXT, "not text: want %s", want);
 			return NULL;
 		}
+		r->before = r->checksum;
+		r->checksum = crc32_add(r->checksum, r->text, (size_t)n);
 		r->text[n - 1] = '\0';
 		if (strncmp(r->text, "# cmd: ", 7) == 0) {
 			free(r->file->cmd);
@@ -188,6 +214,26 @@ static char *next_value(struct reader *r, const char *word)
 		return NULL;
 	}
 	return s + n + 1;
+}
+
+/* The last line, with the checksum of those before it. */
+static enum num_status read_end(struct reader *r)
+{
+	const char *s = next_line(r, "'end'");
+	char want[32];
+
+	if (!s)
+		return NUM_DOMAIN;
+	snprintf(want, sizeof want, end_line, (unsigned long)r->before);
+	if (strcmp(s, want) == 0)
+		return NUM_OK;
+	if (strncmp(s, "end", 3) == 0)
+		snprintf(r->why, NETFILE_TEXT,
+			"want '%s', got '%.40s': damaged or edited", want, s);
+	else
+		snprintf(r->why, NETFILE_TEXT,
+			"want 'end' after the weights, got '%.40s'", s);
+	return NUM_DOMAIN;
 }
 
 static enum num_status read_weights(struct reader *r, struct network *net)
@@ -222,13 +268,7 @@ static enum num_status read_weights(struct reader *r, struct network *net)
 		snprintf(r->why, NETFILE_TEXT, "more than %zu weights", n);
 		return NUM_DOMAIN;
 	}
-	s = next_line(r, "'end'");
-	if (s && strcmp(s, "end") != 0) {
-		snprintf(r->why, NETFILE_TEXT,
-			"want 'end' after the weights, got '%.40s'", s);
-		return NUM_DOMAIN;
-	}
-	return s ? NUM_OK : NUM_DOMAIN;
+	return read_end(r);
 }
 
 static enum num_status read_input(const char *s, struct network_shape *shape)
@@ -248,14 +288,13 @@ static struct network *read_network(struct reader *r, int batch)
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	struct network_shape input;
 	struct network *net;
-	char *s = next_line(r, "'wearpipe-network 1'");
+	char *s = next_line(r, first_line);
 	int layers;
 
 	if (!s)
 		return NULL;
-	if (strcmp(s, "wearpipe-network 1") != 0) {
-		snprintf(r->why, NETFILE_TEXT, "want 'wearpipe-network 1', got '%.40s'",
-			s);
+	if (strcmp(s, first_line) != 0) {
+		snprintf(r->why, NETFILE_TEXT, "want '%s', got '%.40s'", first_line, s);
 		return NULL;
 	}
 	s = next_value(r, "purpose");

@@ -12,14 +12,14 @@
  *
  * A file of weights is text, in this order:
  *
- *	wearpipe-network 1
+ *	wearpipe-network 2
  *	# cmd: how it was made           any number of comments
  *	purpose delays                   one word: what the outputs mean
  *	input 1 2 500                    channels, rows, columns
  *	layers 10:tanh 3:linear
  *	weights 10043                    number of weights, then these, in the order of
  *	...                              network_weights(), separated by blanks
- *	end
+ *	end crc32 1b2c3d4e               checksum of all bytes before this line
  *
  * Numbers are written with nine digits, so that the same single-precision numbers are
  * read.
@@ -38,8 +38,9 @@ enum { NETFILE_TEXT = 160 }; /* room for a message, a purpose or the layers in w
 enum num_status netfile_parse_layers(const char *text, enum network_activation activation,
 	struct network_layer *layer, int *count, char why[NETFILE_TEXT]);
 
-/* The caller checks ferror(f). */
-void netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd);
+/* The caller checks ferror(f); NUM_MEMORY: nothing was written. */
+enum num_status netfile_write(
+	FILE *f, struct network *net, const char *purpose, const char *cmd);
 
 /* Contents of a file besides the network, or why it could not be read. */
 struct netfile {

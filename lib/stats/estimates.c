@@ -16,23 +16,27 @@ struct basis {
 	size_t steps;
 };
 
+/* Intervals where the confidence is no nan. */
 static enum weibull_status fit(const struct ensemble_par *par, const double *x,
-	const double *weight, size_t n, struct weibull *w)
+	const double *weight, size_t n, double confidence, struct weibull *w)
 {
 	return weibull_fit(x, weight, n, par->truncated ? par->low : 0,
-		par->truncated ? par->high : INFINITY, par->confidence, w);
+		par->truncated ? par->high : INFINITY, confidence, w);
 }
 
 enum weibull_status estimate_weibull(
 	const struct ensemble *e, const struct sketch *diameters, struct weibull *w)
 {
-	return fit(ensemble_par(e), diameters->value, diameters->weight, diameters->n, w);
+	return fit(ensemble_par(e), diameters->value, diameters->weight, diameters->n,
+		NAN, w);
 }
 
 static enum num_status estimate_fits(const struct ensemble_par *par,
-	const struct basis *b, struct weibull *w, struct estimate out[ESTIMATES])
+	const struct basis *b, double confidence, struct weibull *w,
+	struct estimate out[ESTIMATES])
 {
-	enum weibull_status status = fit(par, b->diameter, b->weight, b->diameters, w);
+	enum weibull_status status =
+		fit(par, b->diameter, b->weight, b->diameters, confidence, w);
 	struct power p;
 
 	for (int q = 0; q < ESTIMATES; q++)
@@ -83,7 +87,7 @@ enum num_status estimate_all(const struct ensemble *e, struct estimate out[ESTIM
 		step[b.steps + k] =
 			par->per_step ? s->count.mean * s->count.n : s->total_count;
 	}
-	status = estimate_fits(par, &b, &w, out);
+	status = estimate_fits(par, &b, par->confidence, &w, out);
 	if (!isnan(out[ESTIMATE_SHAPE].value))
 		out[ESTIMATE_KS].value = weibull_distance(&w, x->value, x->weight, x->n);
 	if (ensemble_diameter(e)->n > 0)
@@ -211,7 +215,7 @@ static enum num_status draw_estimates(
 		}
 	}
 	sum_growth(b, drawn);
-	if (estimate_fits(par, &b->basis, &w, out))
+	if (estimate_fits(par, &b->basis, NAN, &w, out))
 		return NUM_MEMORY;
 	if (!par->partial)
 		worn += drawn - known;

@@ -54,7 +54,8 @@ struct estimate_contrast {
 struct estimate_contrast estimate_compare(const double value[2], const double error[2],
 	const double log_error[2], const double realisations[2], double confidence);
 
-/* The Weibull distribution of diameters, truncated as the ensemble states. */
+/* The Weibull distribution of diameters, truncated as the ensemble states, without
+ * intervals. */
 enum weibull_status estimate_weibull(
 	const struct ensemble *e, const struct sketch *diameters, struct weibull *w);
 

@@ -146,26 +146,38 @@ static void newton_step(const double g[2], const double h[3], double step[2])
 	step[1] = (h[1] * g[0] - a * g[1]) / det;
 }
 
-/* Minimum from p on, with steps of at most a half that never increase the value;
- * NUM_DOMAIN if there is none. */
-static enum num_status descend(const struct sample *m, double p[2], double h[3])
-{
-	/* The logarithm of the shape, or that of the scale over its width: e^20 from the
-	 * start is a power law, whose likelihood has no maximum on the way.  Steps of
-	 * half a unit cross that in 40; 500 leave room for steps that were halved. Where
-	 * the slope is 1e-7 the value exceeds its minimum by some 1e-14, its rounding;
-	 * Newton's step from there leaves the square of the slope. */
-	enum { STEPS = 500, FAR = 20 };
-	static const double flat = 1e-7, longest = 0.5;
-	double here = minus_log(m, p[0], p[1]), g[2], step[2], start = p[0];
+/* The logarithm of the shape, or that of the scale over its width: e^20 from the start is
+ * a power law, whose likelihood has no maximum on the way, or has reached its limit. */
+static const double FAR = 20;
 
-	for (int i = 0; i < STEPS && fabs(p[0] - start) < FAR &&
-			fabs(p[1]) < FAR * fmax(m->stretch, 1);
-		i++) {
+static int is_far(const struct sample *m, const double p[2])
+{
+	return !(fabs(p[0] - log(m->stretch)) < FAR &&
+		 fabs(p[1]) < FAR * fmax(m->stretch, 1));
+}
+
+/* Minimum from p on, with steps of at most a half that never increase the value;
+ * NUM_DOMAIN if there is none.  held: the parameter that keeps its value, -1: none. */
+static enum num_status descend(const struct sample *m, int held, double p[2], double h[3])
+{
+	/* Steps of half a unit cross FAR in 40; 500 leave room for steps that were
+	 * halved. Where the slope is 1e-7 the value exceeds its minimum by some 1e-14,
+	 * its rounding; Newton's step from there leaves the square of the slope.  An end
+	 * of an interval is determined to the root of that rounding. */
+	enum { STEPS = 500 };
+	static const double longest = 0.5;
+	double flat = held < 0 ? 1e-7 : 1e-5;
+	double here = minus_log(m, p[0], p[1]), g[2], step[2];
+
+	for (int i = 0; i < STEPS && !is_far(m, p); i++) {
 		double size, there, steep;
 
 		slope(m, p, g);
 		curvature(m, p, h);
+		if (held >= 0) {
+			g[held] = h[1] = 0;
+			h[2 * held] = h[2 - 2 * held];
+		}
 		steep = hypot(g[0], g[1]);
 		newton_step(g, h, step);
 		/* Nearer the value of the function shows no difference: the last step. */
@@ -189,6 +201,64 @@ static enum num_status descend(const struct sample *m, double p[2], double h[3])
 		here = there;
 	}
 	return NUM_DOMAIN;
+}
+
+/* What the negative log likelihood over n is at least with parameter i held, and there
+ * the other one.  With another shape the scale is sought over the width of that. */
+static double least_minus_log(const struct sample *m, int i, double p[2])
+{
+	struct sample scaled = *m;
+	double q[2] = { p[0], p[1] }, h[3], ratio;
+
+	if (i == 0)
+		scaled.stretch = exp(p[0]);
+	ratio = scaled.stretch / m->stretch;
+	q[1] *= ratio;
+	descend(&scaled, i, q, h);
+	p[1 - i] = i == 0 ? q[1] / ratio : q[0];
+	return minus_log(&scaled, q[0], q[1]);
+}
+
+/* An end of the interval of parameter i, on the side of this deviation from the best
+ * values: where the likelihood, at its maximum over the other parameter, has fallen by
+ * fall from its own.  INFINITY with the sign of the side where it never does. */
+static double interval_end(const struct sample *m, const double best[2], int i,
+	double deviation, double fall)
+{
+	double limit = minus_log(m, best[0], best[1]) + fall;
+	double far = i == 0 ? FAR : FAR * fmax(m->stretch, 1);
+	double inside = best[i], below = -fall, outside, above;
+	double p[2] = { best[0], best[1] };
+
+	for (p[i] += deviation;; p[i] = best[i] + 2 * (p[i] - best[i])) {
+		if (!(fabs(p[i] - best[i]) < far))
+			return copysign(INFINITY, deviation);
+		outside = p[i];
+		above = least_minus_log(m, i, p) - limit;
+		if (!(above < 0))
+			break;
+		inside = outside;
+		below = above;
+	}
+	/* The Illinois method, to about the digits that the likelihood determines. */
+	for (int k = 0; k < 60 && fabs(outside - inside) > 1e-8 * fabs(deviation); k++) {
+		double value, at = (inside * above - outside * below) / (above - below);
+
+		if (!(fabs(at - inside) < fabs(outside - inside)))
+			at = 0.5 * (inside + outside);
+		p[i] = at;
+		value = least_minus_log(m, i, p) - limit;
+		if (value < 0) {
+			above *= 0.5;
+			inside = at;
+			below = value;
+		} else {
+			below *= 0.5;
+			outside = at;
+			above = value;
+		}
+	}
+	return inside;
 }
 
 static double distribution(const struct weibull *w, double x)
@@ -223,14 +293,19 @@ double weibull_distance(
 	return most;
 }
 
-static struct estimate log_interval(
-	double log_value, double deviation, double unit, double t)
+/* The interval of parameter i, whose logarithm is over scale, by its standard deviation
+ * from the curvature, which is where the search for its ends begins. */
+static struct estimate log_interval(const struct sample *m, const double p[2], int i,
+	double deviation, double t, double scale, double unit)
 {
-	struct estimate e = { unit * exp(log_value),
-		unit * exp(log_value - t * deviation),
-		unit * exp(log_value + t * deviation) };
+	double end[2] = { NAN, NAN };
+	/* That of a normal law whose width is found from as many values less two. */
+	double fall = 0.5 * log1p(t * t / (m->count - 2));
 
-	return e;
+	for (int k = 0; k < 2 && !isnan(t); k++)
+		end[k] = interval_end(m, p, i, k ? deviation : -deviation, fall);
+	return (struct estimate){ unit * exp(p[i] / scale), unit * exp(end[0] / scale),
+		unit * exp(end[1] / scale) };
 }
 
 /* For values divided by their mean. */
@@ -239,8 +314,6 @@ static enum weibull_status fit_scaled(
 {
 	double p[2], h[3], det, sum = 0;
 	double k = whole_shape(m), n = m->count;
-	/* 92 to 100 % of 95 % intervals of 3 to 50 values hold, with the normal quantile
-	 * 71 to 95 %. */
 	double t = n > 2 ? gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, n - 2) : NAN;
 
 	for (size_t i = 0; i < m->n; i++)
@@ -249,7 +322,7 @@ static enum weibull_status fit_scaled(
 	p[0] = log(k);
 	p[1] = log(sum / n);
 	if (m->low > 0 || isfinite(m->high)) {
-		if (descend(m, p, h))
+		if (descend(m, -1, p, h))
 			return WEIBULL_NONE;
 	} else {
 		curvature(m, p, h);
@@ -257,9 +330,8 @@ static enum weibull_status fit_scaled(
 	det = h[0] * h[2] - h[1] * h[1];
 	if (!(det > 0 && h[0] > 0 && h[2] > 0))
 		return WEIBULL_NONE;
-	w->shape = log_interval(p[0], sqrt(h[2] / det / n), 1, t);
-	w->scale = log_interval(
-		p[1] / m->stretch, sqrt(h[0] / det / n) / m->stretch, unit, t);
+	w->shape = log_interval(m, p, 0, sqrt(h[2] / det / n), t, 1, 1);
+	w->scale = log_interval(m, p, 1, sqrt(h[0] / det / n), t, m->stretch, unit);
 	w->low = m->low * unit;
 	w->high = m->high * unit;
 	w->mean = w->scale.value * tgamma(1 + 1 / w->shape.value);

@@ -33,10 +33,11 @@ enum weibull_status {
 
 /* Maximum likelihood for n values x > 0, each of them weight[i] times (NULL: once).
  * If values below low or above high could not be observed, the density is that of the
- * distribution truncated there; 0 and INFINITY: not truncated.  Intervals from the
- * curvature of the likelihood in the logarithms of the parameters, by Student's t with
- * two degrees of freedom fewer than values; nan for two values.  w is set only where the
- * fit succeeds. */
+ * distribution truncated there; 0 and INFINITY: not truncated.  Intervals by the
+ * profile of the likelihood: where its maximum over the other parameter has fallen by
+ * t^2 / 2, Student's t with two degrees of freedom fewer than values; 0 or INFINITY where
+ * it never does, since a power law fits as well, and nan for two values or a confidence
+ * of nan.  w is set only where the fit succeeds. */
 enum weibull_status weibull_fit(const double *x, const double *weight, size_t n,
 	double low, double high, double confidence, struct weibull *w);
 double weibull_density(const struct weibull *w, double x); /* truncated as fitted */

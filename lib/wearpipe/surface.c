@@ -1,6 +1,7 @@
 #include "report.h"
 #include "surface/areal.h"
 #include "surface/rough.h"
+#include <math.h>
 #include <stdlib.h>
 #include <wearpipe/surface.h>
 
@@ -86,6 +87,8 @@ enum wp_status wp_roughness(int nx, int ny, double dx, double dy, const double *
 		return WP_DOMAIN;
 	if (surface_measure(nx, ny, dx, dy, z, &p))
 		return WP_NO_MEMORY;
+	if (!isfinite(p.sq))
+		return WP_NUMBERS;
 	*roughness = (struct wp_roughness){ p.sa, p.sq, p.ssk, p.sku, p.sp, p.sv, p.sz,
 		p.sdq, p.sdr, p.sal, p.str };
 	return WP_OK;

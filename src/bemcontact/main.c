@@ -4,7 +4,9 @@
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/contact_options.h"
+#include "common/edge.h"
 #include "common/raw_layout.h"
+#include "contact/patches.h"
 #include "contact/solver.h"
 #include "io/fields.h"
 #include "tables.h"
@@ -112,13 +114,9 @@ static struct contact *solver_for(const struct record *r, const struct contact_p
 static void put_results(struct record *r, const struct contact_par *par,
 	const struct contact_result *s, int converged)
 {
-	/* What an earlier contact of this record left, and this one may not set again. */
-	static const char *const old[] = { "hardness", "coating", "plastic_area",
-		"friction", "tangential_load", "tangential_displacement", "stick_area",
-		"flow_depth", "flow_volume", NULL };
-
-	for (int k = 0; old[k]; k++)
-		record_drop_key(r, old[k]);
+	press_forget(r);
+	record_drop_key(r, "hardness");
+	record_drop_key(r, "coating");
 	press_record(r, par);
 	if (par->kernel) {
 		/* The key of the contact modulus does not apply to this kernel. */
@@ -219,6 +217,19 @@ void put_row(const struct task *t, const double *height, const struct contact_re
 	tables_put(t->r, &t->par, s, p, stiffness, converged, last);
 }
 
+static struct edge edge;
+
+/* Returns 1 if the contact is mostly beyond the edge of the grid. */
+static int note_edge(const struct task *t)
+{
+	struct patch_grid grid = { t->par.nx, t->par.ny, t->par.dx, t->par.dy,
+		t->par.boundary == CONTACT_PERIODIC };
+	double share = contact_edge_load(&grid, t->p);
+
+	record_set(t->r, "edge_load", "%.17g", share);
+	return edge_load_note(&edge, share, t->r->realisation, sweep);
+}
+
 /* One contact and its row; returns 1 if it converged. */
 static int solve_step(const struct task *t, double target, int warm, int last,
 	struct contact_result *found)
@@ -264,12 +275,22 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
+/* Contact modulus of what touches: of a soft layer, whatever bears it. */
+static double touching_modulus(const struct contact_par *par)
+{
+	double nu = coating.poisson;
+
+	if (!par->kernel)
+		return par->estar;
+	return fmin(par->estar, 1 / ((1 - nu * nu) / coating.young + coating.other));
+}
+
 /* Warns once of values that are possible but unlikely to be meant.  A number below 1000
  * without its unit may be one of MPa, up to 1 GPa; 1 kPa is the weight of 13 mm of steel.
  * The ideal strength of solids is about a tenth of their modulus. */
 static void doubt(const struct contact_par *par, const struct contact_result *found)
 {
-	double touching = found->pressure / found->area;
+	double touching = found->pressure / found->area, modulus = touching_modulus(par);
 	static int said;
 
 	if (said || !(found->pressure > 0))
@@ -278,10 +299,10 @@ static void doubt(const struct contact_par *par, const struct contact_result *fo
 	if (found->pressure < 1e3 && !isnan(press.pressure))
 		warn("--pressure %g Pa is very low: is %gMPa meant?", press.pressure,
 			press.pressure);
-	else if (touching > 0.1 * par->estar)
+	else if (touching > 0.1 * modulus)
 		warn("the mean pressure where the bodies touch, %.3g GPa, is above a tenth "
 		     "of the contact modulus of %.3g GPa: no solid is elastic there%s",
-			1e-9 * touching, 1e-9 * par->estar,
+			1e-9 * touching, 1e-9 * modulus,
 			par->hardness > 0 ? "" : ", specify --hardness");
 	else
 		said = 0;
@@ -297,7 +318,7 @@ static void clear_row(void *context, size_t row, int worker)
 	memset(t->p + row * nx, 0, nx * sizeof *t->p);
 }
 
-/* Solves one record in place; returns 1 if it converged. */
+/* Solves one record in place; returns 1 if it converged to a contact within the grid. */
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
 	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };
@@ -340,6 +361,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
+	converged &= !note_edge(&t);
 	doubt(&t.par, &found);
 	free(own_gap);
 	free(t.other);
@@ -389,6 +411,7 @@ int main(int argc, char **argv)
 		fields_write(out, &r, fields_more(in));
 		progress_within(1, part.last);
 	}
+	edge_load_warn(&edge, fields_name(in));
 	fields_done(out);
 	tables_done();
 	fields_close(in);

@@ -47,10 +47,10 @@ static struct table_out *open_table(const char *path, const char *upstream,
 void tables_open(const char *upstream)
 {
 	table = open_table(table_path, upstream, "--table",
-		"1 N Pa m m 1 1 N/m 1 m Pa Pa Pa Pa Pa 1 J 1 1 1",
+		"1 N Pa m m 1 1 N/m 1 m Pa Pa Pa Pa Pa 1 J 1 1 1 1",
 		"realisation load mean_pressure approach indentation area corrected_area "
 		"stiffness patches perimeter contact_pressure p10 p50 p90 peak plastic_area "
-		"energy optimality_gap iterations converged");
+		"energy optimality_gap iterations converged edge_load");
 	patches = open_table(patches_path, upstream, "--patches", "1 1 m2 m2 m N Pa m m",
 		"realisation cells area corrected_area perimeter load peak x y");
 }
@@ -80,7 +80,7 @@ static void put_patches(const struct record *r, const struct patch_grid *grid,
 
 static void put_contact(const struct record *r, const struct patch_grid *grid,
 	const struct contact_result *found, const double *quantile, double stiffness,
-	double perimeter, size_t n, int converged)
+	double perimeter, size_t n, int converged, double edge_load)
 {
 	double whole = grid->nx * grid->dx * grid->ny * grid->dy;
 	double corrected =
@@ -90,7 +90,7 @@ static void put_contact(const struct record *r, const struct patch_grid *grid,
 		(double)n, perimeter,
 		found->area > 0 ? found->pressure / found->area : NAN, quantile[0],
 		quantile[1], quantile[2], quantile[3], found->plastic, found->energy,
-		found->optimality_gap, (double)found->iterations, converged };
+		found->optimality_gap, (double)found->iterations, converged, edge_load };
 
 	follow_cmd(table, r, "--table");
 	table_put_row(table, row, sizeof(row) / sizeof *row);
@@ -121,7 +121,8 @@ void tables_put(const struct record *r, const struct contact_par *par,
 	if (contact_quantiles(
 		    pressure, (size_t)par->nx * (size_t)par->ny, part, quantile, 4) != 0)
 		die(EXIT_RUN, "the pressures of a contact:");
-	put_contact(r, &grid, found, quantile, stiffness, perimeter, n, converged);
+	put_contact(r, &grid, found, quantile, stiffness, perimeter, n, converged,
+		contact_edge_load(&grid, pressure));
 }
 
 void tables_done(void)

@@ -151,6 +151,18 @@ void press_record(struct record *r, const struct contact_par *par)
 		record_set(r, "hardness", "%.17g", par->hardness);
 }
 
+void press_forget(struct record *r)
+{
+	static const char *const found[] = { "load", "mean_pressure", "approach",
+		"indentation", "area", "plastic_area", "energy", "optimality_gap",
+		"iterations", "converged", "edge_load", "friction", "tangential_load",
+		"tangential_displacement", "stick_area", "flow_depth", "flow_volume",
+		NULL };
+
+	for (int k = 0; found[k]; k++)
+		record_drop_key(r, found[k]);
+}
+
 int press_same(const struct contact_par *a, const struct contact_par *b)
 {
 	return a->nx == b->nx && a->ny == b->ny && a->dx == b->dx && a->dy == b->dy &&

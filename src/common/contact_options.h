@@ -34,6 +34,8 @@ void press_differs(const char *name, long number, const char *what, const char *
 int press_given(const struct record *r, const char *name, long number);
 /* Writes the keys of material and boundary. */
 void press_record(struct record *r, const struct contact_par *par);
+/* Drops what an earlier contact found: it is not of other heights or another load. */
+void press_forget(struct record *r);
 /* 1 if both are the same grid, material and boundary, so that a solver serves again. */
 int press_same(const struct contact_par *a, const struct contact_par *b);
 

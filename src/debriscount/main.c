@@ -144,7 +144,7 @@ static double time_of(const struct table_in *t, int column, int second)
 {
 	double v = table_number(t, column);
 
-	if (v < 0 && second >= 0 && table_number(t, second) >= 0)
+	if (v < 0 && isfinite(v) && second >= 0 && table_number(t, second) >= 0)
 		return 0;
 	if (!isfinite(v) || v < 0)
 		die(EXIT_RUN, "%s: line %ld: %s is %g, want a time of 0 or later",

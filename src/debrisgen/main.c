@@ -4,6 +4,7 @@
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/contact_options.h"
+#include "common/edge.h"
 #include "common/moments.h"
 #include "io/fields.h"
 #include "num/pages.h"
@@ -13,13 +14,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Share of the load on the outermost cells that is worth a warning: what they carry in
- * full contact of 80 x 80 cells. */
-static const double EDGE_LOAD = 0.05;
 /* What the default model takes on 2048 x 2048 cells; more comes in small pages. */
 enum { RESERVE = 256 << 20 };
-/* From half of the load on, the contact is mostly with what the grid has cut off. */
-static const double EDGE_MOST = 0.5;
 
 static const char not_converged[] = "a contact did not converge";
 
@@ -46,13 +42,6 @@ static const struct prog prog = { "debrisgen",
 	"Compute the wear particles of a rough contact, step by step.", "[file]",
 	"fields: height, pressure, from bemcontact", "table: one row per wear particle",
 	opts };
-
-/* A share of the load or of the volume, on the edge of a free grid: steps with more than
- * a limit, and the worst of them. */
-struct edge {
-	long steps, realisation, step;
-	double most;
-};
 
 /* The state of a run over all records. */
 struct run {
@@ -149,17 +138,6 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 			fields_name(run->in), fields_count(run->in));
 }
 
-static void note_edge(
-	struct edge *e, double share, double limit, const struct scene *c, long step)
-{
-	e->steps += share > limit;
-	if (share > e->most) {
-		e->most = share;
-		e->realisation = c->now.r->realisation;
-		e->step = step;
-	}
-}
-
 /* 1 if the contact is too large for a further step. */
 static int check_contact(struct run *run, struct scene *c, long step)
 {
@@ -167,8 +145,7 @@ static int check_contact(struct run *run, struct scene *c, long step)
 	struct debris_step s;
 
 	wearing_contact(run->wearing, &c->now, &s);
-	note_edge(&run->edge, s.edge_load, EDGE_LOAD, c, step);
-	if (s.edge_load > EDGE_MOST)
+	if (edge_load_note(&run->edge, s.edge_load, c->now.r->realisation, step))
 		doubt(run, "the outermost cells carry most of the load");
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
@@ -204,7 +181,7 @@ static void check_border(
 	for (int k = 0; k < 2; k++)
 		if (body[k] && body[k]->volume > 0)
 			most = fmax(most, body[k]->beyond / body[k]->volume);
-	note_edge(&run->border, most, DEBRIS_BEYOND, c, s->number);
+	edge_note(&run->border, most, DEBRIS_BEYOND, c->now.r->realisation, s->number);
 	if (most > DEBRIS_BEYOND)
 		doubt(run, "particles are cut off at the border of the grid");
 }
@@ -292,19 +269,6 @@ static void wear_record(struct run *run, struct record *r)
 	}
 }
 
-static void warn_of_edge(struct run *run)
-{
-	const struct edge *e = &run->edge;
-
-	stats_add("edge_load_steps", (double)e->steps);
-	if (e->steps)
-		warn("%s: %ld steps with more than 5 %% of the load on the outermost "
-		     "cells, worst %.0f %% (realisation %ld, step %ld): use a larger area, "
-		     "roughgen --crown auto, or --boundary periodic",
-			fields_name(run->in), e->steps, 100 * e->most, e->realisation,
-			e->step);
-}
-
 static void warn_of_border(struct run *run)
 {
 	const struct edge *e = &run->border;
@@ -338,7 +302,7 @@ int main(int argc, char **argv)
 		progress_within(1, 0);
 	}
 	progress_clear();
-	warn_of_edge(&run);
+	edge_load_warn(&run.edge, fields_name(run.in));
 	warn_of_border(&run);
 	if (!wearing_warn(run.wearing)) {
 		doubt(&run, "the surrogate is of other surfaces, or doubtful itself");

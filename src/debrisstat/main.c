@@ -183,7 +183,7 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
-static const char *doubted; /* why the input is doubtful, NULL: it is not */
+static char *doubted; /* why the input is doubtful, NULL: it is not */
 
 /* Ends the output, which is as doubtful as the input. */
 static void finish(struct table_out *t)
@@ -199,6 +199,31 @@ struct study {
 	double distance; /* slid in a step, m */
 };
 
+static struct study study_of(const struct table_in *t)
+{
+	return (struct study){ table_quantity(t, "nominal_area", UNIT_AREA),
+		table_quantity(t, "step_distance", UNIT_LENGTH) };
+}
+
+/* The values may have been rounded in between. */
+static int differ(double a, double b)
+{
+	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
+}
+
+/* The life of --compare is that of one area and step. */
+static void check_study(const struct table_in *t, const struct study *study)
+{
+	struct study now = study_of(t);
+
+	if (other_path && differ(now.area, study->area))
+		die(EXIT_RUN, "%s: line %ld: surfaces of %g and of %g m2 in one study",
+			table_name(t), table_line(t), study->area, now.area);
+	if (other_path && differ(now.distance, study->distance))
+		die(EXIT_RUN, "%s: line %ld: steps of %g and of %g m in one study",
+			table_name(t), table_line(t), study->distance, now.distance);
+}
+
 static void read_particles(
 	struct ensemble *e, const char *path, struct study *study, char **cmd)
 {
@@ -207,8 +232,9 @@ static void read_particles(
 		table_with_comments(input_open(path), simulated_comment, &simulated);
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
-	long last = 0;
+	long last = 0, part = table_part(t);
 	struct summary summary;
+	const char *why;
 
 	cr = table_need(t, "realisation");
 	cs = table_need(t, "step");
@@ -216,11 +242,22 @@ static void read_particles(
 	cv = table_need_quantity(t, "volume", UNIT_VOLUME);
 	ca = table_need(t, "aspect");
 	open_summary(&summary);
+	*study = study_of(t);
 	for (; more; more = table_next(t)) {
 		struct particle_row s = { table_whole(t, cr, 0, 1e15),
-			table_whole(t, cs, 1, 1e6), table_positive(t, cd),
+			table_whole(t, cs, 1, 1e6), table_diameter(t, cd),
 			table_positive(t, cv), table_part(t) };
 
+		/* A litre: of the largest diameter, in a few times its sphere. */
+		if (s.volume > 1e-3)
+			die(EXIT_RUN,
+				"%s: line %ld: volume is %g m3, want m3 or a '# units:' line "
+				"above the header that names the unit",
+				table_name(t), table_line(t), s.volume);
+
+		if (table_part(t) != part)
+			check_study(t, study);
+		part = table_part(t);
 		read_summary(&summary, e, s.realisation);
 		check(e, ensemble_add(e, &s));
 		last = s.step > last ? s.step : last;
@@ -241,9 +278,9 @@ static void read_particles(
 				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
-	doubted = table_doubted(t) ? xstrdup(table_key(t, "doubtful")) : doubted;
-	study->area = table_quantity(t, "nominal_area", UNIT_AREA);
-	study->distance = table_quantity(t, "step_distance", UNIT_LENGTH);
+	why = table_doubted(t);
+	if (why)
+		doubted = doubted ? xappend(doubted, "; %s", why) : xstrdup(why);
 	*cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 }

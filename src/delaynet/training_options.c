@@ -144,7 +144,8 @@ void learning_train(void)
 	stats_set("weights", (double)network_weight_count(net));
 	stats_set("samples", (double)(learning.fresh ? lessons.count * learning.epochs
 						     : lessons.count));
-	netfile_write(stdout, net, l.purpose, cmd);
+	if (netfile_write(stdout, net, l.purpose, cmd))
+		die(EXIT_RUN, "out of memory");
 	if (ferror(stdout))
 		die(EXIT_RUN, "standard output:");
 	free(cmd);

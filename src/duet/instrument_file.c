@@ -1,8 +1,8 @@
 #include "instrument_file.h"
 #include "cli/files.h"
 #include "cli/msg.h"
-#include "io/crc32.h"
 #include "io/tables.h"
+#include "num/crc32.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

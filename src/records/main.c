@@ -5,10 +5,10 @@
 #include "cli/stats.h"
 #include "cli/unit.h"
 #include "common/raw_layout.h"
-#include "io/bytes.h"
 #include "io/fields.h"
 #include "io/gsf.h"
 #include "io/tables.h"
+#include "num/bytes.h"
 #include "source.h"
 #include <math.h>
 #include <stdlib.h>

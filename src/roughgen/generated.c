@@ -111,6 +111,11 @@ static struct spectrum_par spectrum(void)
 	return p;
 }
 
+/* The autocorrelation of the longest wave of a side, its period, falls to 1/e at
+ * acos(1/e) / (2 pi) = 0.19 of the side; 1/e lengths of up to this are reached to a
+ * tenth. */
+static const double LONGEST = 0.2;
+
 /* Warns of values that are possible but unlikely to be meant. */
 static void doubt(const struct rough_par *par)
 {
@@ -130,6 +135,12 @@ static void doubt(const struct rough_par *par)
 		warn("heights of %g m exceed the correlation length of %g m: slopes are "
 		     "above 45 degrees, where half-space theory does not hold",
 			par->target.high, shortest);
+	else if (isnan(hurst) &&
+		 (p->corr_x > LONGEST * p->lx || p->corr_y > LONGEST * p->ly))
+		warn("--corr %gm is above a fifth of the side of %gm: no wave that fits into "
+		     "the area has so long a correlation; use a larger --length",
+			p->corr_x > LONGEST * p->lx ? p->corr_x : p->corr_y,
+			p->corr_x > LONGEST * p->lx ? p->lx : p->ly);
 }
 
 struct generated *generated_open(int threads)

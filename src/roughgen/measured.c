@@ -1,6 +1,7 @@
 #include "measured.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/contact_options.h"
 #include "common/raw_layout.h"
 #include "roughness_options.h"
 #include "surface/filter.h"
@@ -109,6 +110,10 @@ static void take_heights(
 		stats_add("samples_cropped", (double)r->nx * r->ny - (double)nx * ny);
 	}
 	new_record(s, r, nx, ny, r->dx, r->dy);
+	press_forget(s);
+	/* A piece of a periodic surface does not continue itself. */
+	if (crop.n)
+		record_drop_key(s, "boundary");
 	surface_crop(r->nx, z, x, y, nx, ny, s->data[0]);
 }
 
@@ -185,6 +190,7 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 			"%s: record %ld: --ends crop removes all of %d x %d samples",
 			fields_name(in), fields_count(in), s->nx, s->ny);
 	new_record(&t, s, s->nx - 2 * cx, s->ny - 2 * cy, s->dx, s->dy);
+	record_drop_key(&t, "boundary");
 	surface_crop(s->nx, s->data[0], cx, cy, t.nx, t.ny, t.data[0]);
 	stats_add("samples_cropped", (double)s->nx * s->ny - (double)t.nx * t.ny);
 	record_free(s);

@@ -180,7 +180,7 @@ static void read_wear(struct partition *p, const char *option, char **cmd, char 
 	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
-	why = table_key(w.table, "doubtful");
+	why = table_doubt(w.table);
 	if (why)
 		*doubt = xstrdup(why);
 	table_close(w.table);

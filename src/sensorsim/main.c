@@ -144,12 +144,15 @@ static size_t piece(const struct scene *scene, double rate, double frames, int m
 static struct table_out *create_truth(const char *cmd)
 {
 	int alone = strcmp(truth, "-") == 0;
-	const char *rebuild = alone ? "--truth -" : "--truth /dev/fd/3 3>&1 >/dev/null";
-
-	return table_create(alone ? NULL : truth, opt_cmd(cmd, rebuild),
+	char *rebuild =
+		opt_cmd(cmd, alone ? "--truth -" : "--truth /dev/fd/3 3>&1 >/dev/null");
+	struct table_out *t = table_create(alone ? NULL : truth, rebuild,
 		"1 s s m V s m/s m3 m V rad 1 1 1",
 		"particle time1 time2 diameter amplitude delay velocity volume radius "
 		"quadrature phase saturated material kind");
+
+	free(rebuild);
+	return t;
 }
 
 static void run(struct traffic *f, struct table_out *t, struct signal_out *out)

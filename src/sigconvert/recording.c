@@ -3,8 +3,8 @@
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
-#include "io/bytes.h"
 #include "io/tables.h"
+#include "num/bytes.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -118,6 +118,16 @@ static void check_options(void)
 		die(EXIT_USAGE, "--profile requires --format text");
 }
 
+/* No relief of the earth has 100 km, and no atom a part in 1e10 of its diameter: such
+ * heights are numbers of another type, byte order or unit. */
+static void check_heights(const char *name, double most)
+{
+	if (most > 1e5 || (most > 0 && most < 1e-20))
+		die(EXIT_RUN,
+			"%s: heights of up to %.3g m: want another type, byte order or unit",
+			name, most);
+}
+
 int main(int argc, char **argv)
 {
 	struct told told = { 0 };
@@ -125,7 +135,7 @@ int main(int argc, char **argv)
 	struct record r = { 0 };
 	struct fields_out *out;
 	FILE *f;
-	double gaps = 0;
+	double gaps = 0, most = 0;
 	size_t n;
 
 	int operand = opt_parse(&prog, argc, argv);
@@ -151,7 +161,9 @@ int main(int argc, char **argv)
 		if (isinf(r.data[0][i]))
 			r.data[0][i] = NAN;
 		gaps += isnan(r.data[0][i]);
+		most = fmax(most, fabs(r.data[0][i]));
 	}
+	check_heights(c.name, most);
 	if (gaps == (double)n)
 		die(EXIT_RUN, "%s: every height is missing", c.name);
 	note("%d x %d samples of %g x %g m, %.0f missing", r.nx, r.ny, r.dx, r.dy, gaps);

@@ -159,21 +159,22 @@ static _Noreturn void no_row(const struct text *t, long line, const char *conten
 		content);
 }
 
-/* A line that has as many cells as the first row, most of which begin like numbers, is no
- * heading. */
+/* A line that has as many cells as the first row, of which half or more begin like
+ * numbers, is no heading, whatever follows them. */
 static int is_torn_row(const struct text *t, const char *line)
 {
 	const char by[2] = { t->separator, '\0' };
 	int n = 0, numbers = 0;
 
-	for (const char *s = line; *s; s += strcspn(s, by), s += *s != '\0') {
+	for (const char *s = line; *s && n < t->columns;
+		s += strcspn(s, by), s += *s != '\0') {
 		s += strspn(s, " \"");
 		if (!*s)
 			break;
 		n++;
 		numbers += isdigit((unsigned char)s[strspn(s, "+-.")]) != 0;
 	}
-	return n == t->columns && 2 * numbers > n;
+	return n == t->columns && 2 * numbers >= n;
 }
 
 static void read_rows(struct text *t, char *text)

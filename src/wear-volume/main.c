@@ -138,6 +138,12 @@ static long sum_rows(struct table_in *t, struct table_out *out)
 	return without;
 }
 
+static int doubt(struct table_out *out, const char *why)
+{
+	table_comment(out, "doubtful", "%s", why);
+	return 1;
+}
+
 int main(int argc, char **argv)
 {
 	int operand = opt_parse(&prog, argc, argv);
@@ -145,7 +151,8 @@ int main(int argc, char **argv)
 	const char *start = table_key(t, "start");
 	struct table_out *out;
 	char *cmd;
-	const char *why = NULL, *own;
+	const char *own;
+	int doubtful = 0;
 
 	find_columns(t);
 	cmd = opt_cmd(table_upstream(t), NULL);
@@ -153,17 +160,15 @@ int main(int argc, char **argv)
 	if (start)
 		table_comment(out, "start", "%s", start);
 	if (sum_rows(t, out) > 0)
-		why = "rows without a diameter";
+		doubtful = doubt(out, "rows without a diameter");
 	verdict_report();
 	if (verdict_equivalent())
-		why = "the diameters of particles that are not ferrous";
+		doubtful = doubt(out, "the diameters of particles that are not ferrous");
 	own = table_doubted(t);
 	if (own)
-		why = own;
-	if (why)
-		table_comment(out, "doubtful", "%s", why);
+		doubtful = doubt(out, own);
 	table_close(t);
 	table_done(out);
 	free(cmd);
-	return shell_done(why ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -36,10 +36,15 @@ calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
 # error GOT WANT: relative difference
 error() { calc "($2) ? sqrt((($1) / ($2) - 1) ^ 2) : sqrt(($1) ^ 2)"; }
 
-# accurate SCENE EXPECTATION ERROR LIMIT: also wants status 0
+# True if the only reason for status 3 is that most of the load is at the edge
+is_cut_off() {
+	[ "$status" = 3 ] && [ "$(key converged)" = yes ] && awk -v e="$(key edge_load)" 'BEGIN { exit !(e > 0.5) }'
+}
+
+# accurate SCENE EXPECTATION ERROR LIMIT: also wants status 0, or the contact at the edge
 accurate() {
 	reached="area $(key area | cut -c 1-6), $(key iterations) iterations"
-	if [ "$status" = 0 ]; then
+	if [ "$status" = 0 ] || is_cut_off; then
 		near "$1 | $2 | $reached | $(printf %.1e "$3")" "$3" 0 "$4"
 	else
 		fail "$1 | $2 | $reached | $3" "status $status" "$(head -2 err)"

@@ -19,15 +19,15 @@ weibull 2000 2e-4 2.718 | debrisstat >fits
 shape=$(fitted weibull_shape fits)
 # 2000 quantiles of a law fit it but for their grain at the ends
 relative 'Weibull of shape 2.718 and scale 200 um' 'the shape' 2.718 0.002 "$shape"
-for unit in 1e-12 1e-7 1; do
+for unit in 1e-12 1e-7 1e-4; do
 	weibull 2000 "$(awk -v u=$unit 'BEGIN { print 200 * u }')" 2.718 | debrisstat >fits
 	relative "diameters of the order of $unit m" 'the same shape' "$shape" 1e-9 "$(fitted weibull_shape fits)"
 done
 weibull 2000 2e-4 50 | debrisstat >fits
 relative 'shape 50: all nearly equal' 'the shape' 50 0.002 "$(fitted weibull_shape fits)"
-weibull 2000 2e-4 0.3 | debrisstat >fits
+weibull 2000 2e-7 0.3 | debrisstat >fits
 relative 'shape 0.3: diameters over 15 decades' 'the shape' 0.3 0.002 "$(fitted weibull_shape fits)"
-weibull 2000 2e-4 0.2 | debrisstat >fits
+weibull 2000 2e-7 0.2 | debrisstat >fits
 relative 'shape 0.2: diameters over 22 decades' 'the shape' 0.2 0.002 "$(fitted weibull_shape fits)"
 weibull 1 2e-4 2 | debrisstat >fits
 exactly 'one particle' 'counted, not fitted' '1 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"

@@ -6,8 +6,8 @@
 
 # alike NAME EXPECTATION FILE FILE: the same weights
 alike() {
-	sed '/^#/d' "$3" >one
-	sed '/^#/d' "$4" >two
+	sed '/^#/d; /^end/d' "$3" >one
+	sed '/^#/d; /^end/d' "$4" >two
 	[ -s one ] || echo "no weights" >one
 	same "$1 | $2 | the same | 0" one two
 }

@@ -1,5 +1,5 @@
 /* The cyclic redundancy check: its published value, and bytes in any parts */
-#include "io/crc32.h"
+#include "num/crc32.h"
 #include "tap.h"
 
 #include <string.h>

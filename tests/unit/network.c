@@ -282,21 +282,21 @@ static void check_file(void)
 		fclose(f);
 	}
 	ok(n == 0, "every truncation of the file is refused");
-	/* A file with any byte changed is refused or read as another network. */
 	for (size_t i = 0; i < strlen(text); i++)
 		for (const char *c = "9-x \n#\177"; *c; c++) {
 			FILE *f;
 
+			if (text[i] == *c)
+				continue;
 			strcpy(copy, text);
 			copy[i] = *c;
 			f = fmemopen(copy, strlen(copy), "r");
 			back = netfile_read(f, 1, &file);
-			n += back == NULL;
-			free(file.cmd);
+			n += back != NULL;
 			network_free(back);
 			fclose(f);
 		}
-	ok(n > 100, "a file with a changed byte is refused or read, %d refused", n);
+	ok(n == 0, "a file with any byte changed is refused");
 	network_free(net);
 }
 

@@ -33,7 +33,7 @@ static const double SURPRISE = 5;
 static const double HALT = 3.5;
 /* Noise, as a share of the range to the threshold, below which no coordinate describes
  * the wear: else readings without noise, or all equal, would be foretold with certainty:
- * see "Least noise" in doc/benchmarks.md. */
+ * see "Least noise" in doc/trends.md. */
 static const double FINEST = 6e-4;
 /* Turn of a tangent up to which it follows to second order.  With .125 the CRPS is that
  * of exact tangents to .1 % (60 paths of each kind of tests/long/lives.c and of 32
@@ -56,7 +56,7 @@ static const double BENT = -0.4;
  * (passage.c), because curved coordinates stand for slow growth.  With more falls the
  * ends of wear that has just begun to accelerate are too early; rises at once and a
  * spread of the growth have no effect: see "Changes of the regime so far" in
- * doc/benchmarks.md. */
+ * doc/trends.md. */
 static const struct {
 	double hazard, falls, growth;
 } past = { 0.36, 0.25, 16 };

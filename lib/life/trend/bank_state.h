@@ -17,7 +17,7 @@ enum {
 /* Kinds of trends: the weight of observation j of k is (j / k)^memory, and the damage is
  * a Wiener process whose variance over a mean gap is wander times that of an observation.
  * The wanders and weights, and BENT in bank.c, were swept: see "Wiener processes and
- * weights" in doc/benchmarks.md. */
+ * weights" in doc/trends.md. */
 static const struct kind {
 	double memory, wander, log_prior;
 } kinds[KINDS] = { { 0, 0, 0 }, { 1, 0, 0 }, { 3, 0, 0 }, { 0, 3, 0 }, { 0, 0.3, 0 },

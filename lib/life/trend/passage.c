@@ -23,7 +23,7 @@ static const double UNLIKELY = 1e-3;
  * grows may still fall.  These and the three constants below were chosen with the weights
  * of the coordinates, see shapes.c; all where the rate is constant, hazard and growth
  * where it rises, GROWTH_SD, WANDERING and five of the weights were swept again: see
- * "Sweeps of the trends" in doc/benchmarks.md.  With one other unit, hazards of 0.1, 0.3,
+ * doc/trends.md.  With one other unit, hazards of 0.1, 0.3,
  * 0.5 and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with
  * a CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
 static const struct future {
@@ -45,7 +45,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * Where the rate of the damage changes by e as an average over this way, the logarithm of
  * the time has the sd STRAY, and its median is LEAN less: most wear bends more than its
  * coordinate, because straight coordinates have more weight.  Both were swept: see
- * "Stray and lean" in doc/benchmarks.md. */
+ * "Stray and lean" in doc/trends.md. */
 static const double STRAY = 0.2, LEAN = 0.05;
 
 struct bank_chances {

@@ -19,7 +19,7 @@
  *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row (see
- * "Rows held back" in doc/benchmarks.md), is of a copy of the bank that has accepted
+ * "Rows held back" in doc/trends.md), is of a copy of the bank that has accepted
  * them.  It falls with the jump j to them, in units of the distance from D = 0 to the
  * threshold, as 1 / (1 + j^2)^2.  From eight on it is n / (n + 1), since none of n rows
  * has ended it (Laplace's rule of succession).  After three rows running on the healthy

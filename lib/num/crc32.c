@@ -1,5 +1,5 @@
-#include "io/crc32.h"
-#include "io/bytes.h"
+#include "num/crc32.h"
+#include "num/bytes.h"
 #include <pthread.h>
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <wmmintrin.h>

@@ -3,8 +3,8 @@
  *	uint32_t crc = 0;
  *	crc = crc32_add(crc, bytes, n);   of all bytes so far, as zlib.crc32() gives it
  */
-#ifndef IO_CRC32_H
-#define IO_CRC32_H
+#ifndef NUM_CRC32_H
+#define NUM_CRC32_H
 
 #include <stddef.h>
 #include <stdint.h>

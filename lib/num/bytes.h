@@ -1,6 +1,6 @@
 /* bytes.h - IEEE numbers from and to bytes of a stated order, on any host */
-#ifndef IO_BYTES_H
-#define IO_BYTES_H
+#ifndef NUM_BYTES_H
+#define NUM_BYTES_H
 
 #include <stdint.h>
 #include <string.h>
