@@ -10,7 +10,7 @@ struct joint *joint_new(void)
 
 	if (!j)
 		return NULL;
-	j->h = malloc(sizeof *j->h * NPAR * NPAR);
+	j->h = malloc(sizeof *j->h * 3 * OWN_MAX * NPAR);
 	j->factor = malloc(sizeof *j->factor * NPAR * NPAR);
 	j->bq = malloc(sizeof *j->bq * NPAR * 2 * BASIS_MAX);
 	for (int i = 0; i < JOINT_PULSES_MAX; i++)

@@ -12,6 +12,7 @@
 enum {
 	PAR = 3,
 	NPAR = PAR * JOINT_PULSES_MAX,
+	OWN_MAX = JOINT_OWN * JOINT_PULSES_MAX,
 	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1,
 	PAIR_GAPS = 12,
 	BASIS_ROOM = 4 * BASIS_MAX,
@@ -71,14 +72,16 @@ struct joint {
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	int all[JOINT_PULSES_MAX]; /* 0, 1, 2, ...: the set of all pulses */
-	double *h;                 /* NPAR * NPAR: normal matrix or its Cholesky factor */
+	double *h; /* 3 OWN_MAX * NPAR: normal matrix or its Cholesky factor, or
+		      joint_own.c's */
 	double *factor;
 	double energy;           /* e^T e of both channels, ... */
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], move[NPAR];
-	double work;                   /* samples of columns computed, since it is new */
-	double wide[JOINT_PULSES_MAX]; /* shares by which the pulses are wider */
+	double work; /* samples of columns computed, since it is new */
+	double own[JOINT_OWN]
+		  [JOINT_PULSES_MAX]; /* what a prior has moved the pulses by */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
@@ -163,9 +166,10 @@ void joint_solve(const struct joint *j, int np, int start, double *x);
 /* Factor of the normal matrix of the pulses in set, with their columns. */
 enum num_status joint_factorise(struct joint *j, const int *set, int m);
 
-/* joint_width.c */
+/* joint_own.c */
 
-/* Takes the prior of widths into account; the residual must be projected. */
+/* Takes the priors of what pulses have of their own into account; the residual must be
+ * projected. */
 void joint_relax(struct joint *j);
 
 /* joint_pair.c */
