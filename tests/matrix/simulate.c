@@ -45,9 +45,8 @@ static struct option {
 	{ "wall", 0.9 },                 /* no particle beyond this share of the radius */
 	{ "smallest", 80e-6 },           /* diameters, m */
 	{ "largest", 120e-6 },           /* ... */
-	{ "vary", 0 }, /* share within which widths differ from those of velocities */
-	{ "ratio",
-		0 }, /* standard deviation of the logarithm of the gain of a particle */
+	{ "vary", 0 },     /* share within which widths differ from those of velocities */
+	{ "ratio", 0 },    /* standard deviation of the gain among particles, relative */
 	{ "volts", 1 },    /* peak of 100 um at mean velocity, before the filter */
 	{ "gain", 0.909 }, /* of sensor 2 */
 	{ "width", 1 },    /* of its coil, over that of sensor 1 */

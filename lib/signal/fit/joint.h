@@ -98,6 +98,7 @@ static inline double joint_energy_least(const struct joint_scene *s)
 
 struct joint_pulse {
 	double t, delta, a;
+	double own[JOINT_OWN]; /* of the last fit, where these scatter; else 0 */
 	/* Inverse Fisher matrix of (t, t + delta, a), lower triangle by rows. */
 	double cov[6];
 	/* By joint_fit(), if this pulse and another one exchange their arrivals at sensor
@@ -107,6 +108,18 @@ struct joint_pulse {
 	int partner;               /* the other one, while pulses are looked for ... */
 	double kept_t, kept_delta; /* ... and where this one was then */
 };
+
+/* Duration and amplitude of this pulse on channel c. */
+static inline double joint_pulse_duration(
+	const struct joint_scene *s, const struct joint_pulse *p, int c)
+{
+	return joint_duration(s, p->delta, c) * exp(p->own[JOINT_WIDTH]);
+}
+static inline double joint_pulse_height(
+	const struct joint_scene *s, const struct joint_pulse *p, int c)
+{
+	return p->a * (c ? s->gain * exp(p->own[JOINT_RATIO]) : 1);
+}
 
 static inline double joint_delay_variance(const struct joint_pulse *p)
 {

@@ -151,6 +151,10 @@ void joint_hide(const struct joint *joint, int channel, long first, size_t n, do
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 
+/* One step from old along move, limited to meaningful pulses. */
+struct joint_pulse joint_moved(
+	const struct joint *j, const struct joint_pulse *old, const double *move);
+
 /* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
 double joint_fit_set(
 	struct joint *j, const int *set, int m, int max_steps, double tolerance);
@@ -168,9 +172,11 @@ enum num_status joint_factorise(struct joint *j, const int *set, int m);
 
 /* joint_own.c */
 
-/* Takes the priors of what pulses have of their own into account; the residual must be
- * projected. */
+/* Fits what pulses have of their own, with their priors; the errors must be known, and
+ * the residual projected. */
 void joint_relax(struct joint *j);
+/* Removes pulses that are insignificant once the others have something of their own. */
+void joint_prune_relaxed(struct joint *j);
 
 /* joint_pair.c */
 

@@ -117,8 +117,7 @@ void joint_solve(const struct joint *j, int np, int start, double *x)
 	}
 }
 
-/* One step from old along move, limited to meaningful pulses. */
-static struct joint_pulse moved(
+struct joint_pulse joint_moved(
 	const struct joint *j, const struct joint_pulse *old, const double *move)
 {
 	const struct joint_scene *s = &j->scene;
@@ -192,7 +191,7 @@ static void step_forth(struct joint *j, const int *set, int m, struct before *ol
 {
 	for (int x = 0; x < m; x++) {
 		old->pulse[x] = j->pulse[set[x]];
-		j->pulse[set[x]] = moved(j, &old->pulse[x], j->move + PAR * x);
+		j->pulse[set[x]] = joint_moved(j, &old->pulse[x], j->move + PAR * x);
 		swap_columns(j, set[x]);
 		joint_make_columns(j, set[x]);
 	}
@@ -326,7 +325,7 @@ void joint_gain_error(const struct joint *j, double *share, double *se)
 						a->first - b->first);
 			}
 			energy += part;
-			own += part * j->own[JOINT_RATIO][i];
+			own += part * j->pulse[i].own[JOINT_RATIO];
 			scatter += pow(part * j->scene.scatter[JOINT_RATIO], 2);
 		}
 		*share += (c ? along + own : -along) / energy;
