@@ -46,6 +46,7 @@ static struct option {
 	{ "smallest", 80e-6 },           /* diameters, m */
 	{ "largest", 120e-6 },           /* ... */
 	{ "vary", 0 },     /* share within which widths differ from those of velocities */
+	{ "ratio", 0 },    /* standard deviation of the gain among particles, relative */
 	{ "volts", 1 },    /* peak of 100 um at mean velocity, before the filter */
 	{ "gain", 0.909 }, /* of sensor 2 */
 	{ "width", 1 },    /* of its coil, over that of sensor 1 */
@@ -333,6 +334,8 @@ static void add_particle(double t)
 		e->level[0] = -e->level[0];
 	e->level[1] = e->level[0] * get("gain") *
 		      (1 + get("gaindrift") * (t / get("seconds") - 0.5));
+	if (get("ratio") > 0)
+		e->level[1] *= exp(get("ratio") * normal());
 }
 
 /* Arrivals leave room for whole pulses. */

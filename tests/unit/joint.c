@@ -232,7 +232,7 @@ static void test_noisy(
 		scene.tone_knot[1] = 270;
 	}
 	for (unsigned k = 0; k < SCENES; k++) {
-		struct joint_pulse truth[6], found[20];
+		struct joint_pulse truth[6] = { 0 }, found[20];
 		struct joint_result r;
 		int n = 0;
 		uint64_t at = 0;
@@ -571,106 +571,195 @@ static void test_exchange(struct joint *j, const struct joint_scene *plain)
 	ok(silent <= exchanged / 10, "%d of them are thought improbable", silent);
 }
 
+/* What pulses have of their own, by how much it scatters, and the parameter that this
+ * puts out. */
+struct own {
+	int own;
+	const char *name, *out;
+	double scatter;
+	double (*square)(
+		const struct joint_pulse *found, const struct joint_pulse *truth);
+};
+
+/* Squares of errors over their variances. */
+static double delay_square(const struct joint_pulse *p, const struct joint_pulse *truth)
+{
+	return pow(p->delta - truth->delta, 2) / joint_delay_variance(p);
+}
+
+static double size_square(const struct joint_pulse *p, const struct joint_pulse *truth)
+{
+	return pow(p->a - truth->a, 2) / p->cov[5];
+}
+
+static const struct own owns[JOINT_OWN] = {
+	[JOINT_WIDTH] = { JOINT_WIDTH, "width", "delays", 0.02, delay_square },
+	[JOINT_RATIO] = { JOINT_RATIO, "ratio", "amplitudes", 0.03, size_square },
+};
+
+/* Adds a pulse that has deviations of its own. */
+static void add_own(const struct joint_scene *s, const struct joint_pulse *p,
+	const double deviation[JOINT_OWN], double y[2][N])
+{
+	struct joint_scene other = *s;
+
+	other.duration *= exp(deviation[JOINT_WIDTH]);
+	other.gain *= exp(deviation[JOINT_RATIO]);
+	joint_add(&other, p, 1, y[0], y[1], N);
+}
+
 /* Pulses whose widths scatter by 2 % beside their velocities, at which the delay is known
- * to 0.4 %.  With the prior, errors of the delay are as stated: the mean square of 200
- * over the variance is within 3 sqrt(2 / 200) of 1.  Without it, they are several times
- * that.  The half of the widths below the line of an instrument that changes slowly tell
- * a standard deviation within 3 / sqrt(2 * 100).  Widths of which a third are those of
- * two particles, which are only larger, move the line up, and tell of less than their
- * error.
+ * to 0.4 %, or whose ratios scatter by 3 %, at which the amplitude is known to 0.4 %.
+ * With the prior, errors are as stated: the mean square of 200 over the variance is
+ * within 3 sqrt(2 / 200) of 1.  Without it, they are several times that.  The deviations
+ * from the line of an instrument that changes slowly, of widths the half below it, tell a
+ * standard deviation within 3 / sqrt(2 * 100).  Widths of which a third are those of two
+ * particles, which are only larger, move the line up, and tell of less than their error.
  */
-static void test_widths(struct joint *j, const struct joint_scene *tied)
+static void test_own(
+	struct joint *j, const struct joint_scene *tied, const struct own *of)
 {
 	enum { PULSES = 200 };
 	const double part = 3 / sqrt(PULSES);
-	struct joint_scene s = *tied, other;
-	static struct joint_width width[PULSES];
+	struct joint_scene s = *tied;
+	static struct joint_deviation own[PULSES];
 	static double y[2][N];
-	double square[2] = { 0 }, z[2], explained, plain = 0, moved = 0, scatter;
+	double square[2] = { 0 }, z[2], explained, plain = 0, moved = 0, most = 0,
+	       scatter;
 
 	for (unsigned i = 0; i < PULSES; i++) {
-		struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 31.62 };
+		const struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 31.62 };
+		struct joint_deviation *out[JOINT_OWN];
+		double deviation[JOINT_OWN] = { 0 };
 
+		out[of->own] = &own[i];
 		philox_normal2(9, i, RNG_NOISE, 0, z);
-		other = *tied;
-		other.duration *= exp(0.02 * z[0]);
+		deviation[of->own] = of->scatter * z[0];
+		most = fmax(most, fabs(deviation[of->own]));
 		for (int k = 0; k < 2; k++) {
 			struct joint_pulse found = p;
 			struct joint_result r;
 
-			s.widths = k ? 0.02 : 0;
+			s.scatter[of->own] = k ? of->scatter : 0;
 			memset(y, 0, sizeof y);
-			joint_add(&other, &p, 1, y[0], y[1], N);
+			add_own(tied, &p, deviation, y);
 			add_noise(y[0], 2000 + i, 0);
 			add_noise(y[1], 2000 + i, 1);
 			joint_refine(j, &s, y[0], y[1], N, &found, 1, &r);
-			square[k] += pow(found.delta - p.delta, 2) /
-				     joint_delay_variance(&found) / PULSES;
-			if (joint_widths(j, &width[i], &explained) != 1)
-				ok(0, "the width of pulse %u is known", i);
+			square[k] += of->square(&found, &p) / PULSES;
+			if (joint_deviations(j, 1U << of->own, out, &explained) != 1)
+				ok(0, "the %s of pulse %u is known", of->name, i);
 			if (k)
-				moved = fmax(moved, fabs(width[i].share - plain));
-			plain = width[i].share;
-			width[i].at = i;
+				moved = fmax(moved, fabs(own[i].share - plain));
+			plain = own[i].share;
+			own[i].at = i;
 		}
 	}
-	ok(square[0] > 2, "widths that scatter put delays out by %.2g of their variance",
-		square[0]);
+	ok(square[0] > 2, "a %s that scatters puts %s out by %.2g of their variance",
+		of->name, of->out, square[0]);
 	near(square[1], 1, 0.3, "errors are as stated where the scatter is known");
-	/* The model is linear in the widths. */
-	ok(moved < 0.1 * width[0].se, "they are the same whatever the prior, to %.1g",
-		moved);
+	/* Without it the model is linear in them. */
+	ok(moved < 2 * most * most,
+		"to the second order the %s is the same whatever the prior, to %.1g",
+		of->name, moved);
 	for (unsigned i = 0; i < PULSES; i++)
-		width[i].share += 0.1 * i / PULSES;
-	near(joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN), 0.02, 0.02 * part,
-		"the scatter is found, whatever the trend");
+		own[i].share += 0.1 * i / PULSES;
+	near(joint_scatter(of->own, own, PULSES, LIKELIHOOD_CERTAIN), of->scatter,
+		of->scatter * part, "the scatter is found, whatever the trend");
 	for (unsigned i = 0; i < PULSES; i++) {
 		philox_normal2(9, i, RNG_NOISE, 1, z);
-		width[i].share =
-			width[i].se * z[0] + (i % 3 ? 0 : 0.03) + 0.1 * i / PULSES;
+		own[i].share = own[i].se * z[0] + 0.1 * i / PULSES +
+			       (of->own != JOINT_WIDTH || i % 3 ? 0 : 0.03);
 	}
-	scatter = joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN);
-	ok(scatter < width[0].se,
+	scatter = joint_scatter(of->own, own, PULSES, LIKELIHOOD_CERTAIN);
+	ok(scatter < own[0].se,
 		"trend, noise and pairs of particles are no scatter: "
 		"%.1g of their error",
-		scatter / width[0].se);
-	/* Small pulses beside others that are not seen look wider or narrower. */
+		scatter / own[0].se);
+	/* Small pulses beside others that are not seen deviate more. */
 	for (unsigned i = 0; i < PULSES; i++) {
 		philox_normal2(10, i, RNG_NOISE, 1, z);
-		width[i].se = i % 4 ? 0.01 : 1e-4;
-		width[i].share = width[i].se * z[0] * (i % 4 ? 2 : 1);
+		own[i].se = i % 4 ? 0.01 : 1e-4;
+		own[i].share = own[i].se * z[0] * (i % 4 ? 2 : 1);
 	}
-	scatter = joint_width_scatter(width, PULSES, LIKELIHOOD_CERTAIN);
+	scatter = joint_scatter(of->own, own, PULSES, LIKELIHOOD_CERTAIN);
 	ok(scatter < 1e-3, "small pulses show no scatter that large ones do not have");
 }
 
-/* Two pulses that overlap, one wider and one narrower by 1 % than those of their
- * velocities: both widths are found to their second order. */
-static void test_width_pair(struct joint *j, const struct joint_scene *tied)
+/* Two pulses that overlap, with deviations of 1 % of both signs: those of the set are
+ * found to their second order. */
+static void test_own_pair(struct joint *j, const struct joint_scene *tied, unsigned set)
 {
 	const struct joint_pulse truth[2] = { { .t = 280.4, .delta = 3, .a = 31.62 },
 		{ .t = 280.4 + 0.7 * tied->duration, .delta = 4, .a = 25 } };
-	const double share[2] = { 0.01, -0.01 };
+	const double sign[JOINT_OWN][2] = { { 1, -1 }, { -1, 1 } };
 	struct joint_pulse found[2] = { truth[0], truth[1] };
-	struct joint_width width[2];
+	struct joint_deviation own[JOINT_OWN][2], *const out[] = { own[0], own[1] };
 	struct joint_result r;
 	static double y[2][N];
 	double explained = 0;
-	size_t m;
 
 	memset(y, 0, sizeof y);
 	for (int i = 0; i < 2; i++) {
-		struct joint_scene other = *tied;
+		double deviation[JOINT_OWN] = { 0 };
 
-		other.duration *= exp(share[i]);
-		joint_add(&other, &truth[i], 1, y[0], y[1], N);
+		for (int k = 0; k < JOINT_OWN; k++)
+			deviation[k] = set >> k & 1 ? 0.01 * sign[k][i] : 0;
+		add_own(tied, &truth[i], deviation, y);
 	}
 	joint_refine(j, tied, y[0], y[1], N, found, 2, &r);
-	m = joint_widths(j, width, &explained);
-	ok(m == 2, "the widths of %zu pulses that overlap are known", m);
-	for (size_t i = 0; i < m; i++)
-		near(width[i].share, share[i], 1e-3, "and found");
+	ok(joint_deviations(j, set, out, &explained) == 2,
+		"what two pulses that overlap have of their own is known");
+	for (int k = 0; k < JOINT_OWN; k++)
+		for (int i = 0; i < 2 && set >> k & 1; i++)
+			near(own[k][i].share, 0.01 * sign[k][i], 1e-3, "and found");
 	near(explained, r.chi2, 0.01 * r.chi2, "they explain all that is left");
+}
+
+/* The gain error of pulses that overlap and differ in duration: its variance is that of
+ * the ratio of their sums, of which the energies are known, with the scatter of the
+ * ratios.  A prior of these takes nothing of it, and less of it goes into the fit of
+ * pulses that overlap. */
+static void test_gain_error(struct joint *j, const struct joint_scene *tied, int m)
+{
+	const struct joint_pulse truth[2] = { { .t = 280.4, .delta = 3, .a = 31.62 },
+		{ .t = 317.1, .delta = 60, .a = 25 } };
+	const double scatter = 0.02;
+	static double y[2][N];
+	struct joint_scene s = *tied, other;
+	double share[2], se[2], var = 0;
+
+	s.delta_max = 80;
+	other = s;
+	other.gain *= 1.01;
+	for (int k = 0; k < 2; k++) {
+		struct joint_pulse found[2] = { truth[0], truth[1] };
+		struct joint_result r;
+
+		s.scatter[JOINT_RATIO] = k * scatter;
+		memset(y, 0, sizeof y);
+		for (int i = 0; i < m; i++)
+			joint_add(&other, &truth[i], 1, y[0], y[1], N);
+		joint_refine(j, &s, y[0], y[1], N, found, m, &r);
+		joint_gain_error(j, &share[k], &se[k]);
+		memset(y, 0, sizeof y);
+		for (int i = 0; i < m && !k; i++)
+			joint_add(&s, &found[i], 1, y[0], y[1], N);
+		for (int c = 0; c < 2 && !k; c++) {
+			double energy = 0;
+
+			for (int n = 0; n < N; n++)
+				energy += y[c][n] * y[c][n];
+			var += 1 / energy;
+		}
+	}
+	near(se[0], sqrt(var), 1e-6 * sqrt(var), "the error of a wrong gain is known");
+	near(share[0], 0.01, m == 1 ? 1e-4 : 4e-3, "and it is found");
+	near(share[1], 0.01, m == 1 ? 1e-4 : 1e-3, "also where the ratios scatter");
+	var += scatter * scatter;
+	ok(m == 1 ? fabs(se[1] - sqrt(var)) < 1e-2 * se[1]
+		  : se[1] > se[0] && se[1] < sqrt(var),
+		"then its error contains this, less if more pulses scatter");
 }
 
 int main(void)
@@ -696,8 +785,12 @@ int main(void)
 	test_pairs(j, &s, 12);
 	test_exchange(j, &s);
 	test_laminar(j, &s);
-	test_widths(j, &s);
-	test_width_pair(j, &s);
+	for (int own = 0; own < JOINT_OWN; own++)
+		test_own(j, &s, &owns[own]);
+	for (unsigned set = 1; set < 1 << JOINT_OWN; set++)
+		test_own_pair(j, &s, set);
+	test_gain_error(j, &s, 1);
+	test_gain_error(j, &s, 2);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

@@ -235,6 +235,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		joint_merge_pulses(j);
 		joint_prune(j);
 		joint_fit_all(j);
+		joint_prune_relaxed(j);
 		joint_forget_moved(j);
 		full = are_more(j);
 	}

@@ -26,6 +26,10 @@
 #include <math.h>
 #include <stddef.h>
 
+/* What a pulse may have of its own: the logarithm of its width from that of its velocity,
+ * and that of its ratio of amplitudes at the sensors from the gain. */
+enum { JOINT_WIDTH, JOINT_RATIO, JOINT_OWN };
+
 enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
 
 /* Share of its range by which a delay may exceed it during a fit, and largest change of
@@ -43,9 +47,9 @@ struct joint_scene {
 	double threshold;            /* by how much a pulse must reduce chi-square ... */
 	double threshold_near; /* ... where it overlaps others: the search is narrower */
 	double misfit;         /* and by this share of the energy it overlaps */
-	double widths; /* standard deviation of the logarithm of the width of a pulse from
-			  that of its velocity; 0: none, or not known */
-	int signs;     /* 1: amplitudes may be negative too */
+	double scatter[JOINT_OWN]; /* standard deviations of what pulses have of their
+				      own; 0: none, or not known */
+	int signs;                 /* 1: amplitudes may be negative too */
 	/* Samples at either end in which no pulse arrives; 0: the record goes on there,
 	 * and pulses may arrive beyond. */
 	double quiet[2];
@@ -94,6 +98,7 @@ static inline double joint_energy_least(const struct joint_scene *s)
 
 struct joint_pulse {
 	double t, delta, a;
+	double own[JOINT_OWN]; /* of the last fit, where these scatter; else 0 */
 	/* Inverse Fisher matrix of (t, t + delta, a), lower triangle by rows. */
 	double cov[6];
 	/* By joint_fit(), if this pulse and another one exchange their arrivals at sensor
@@ -103,6 +108,18 @@ struct joint_pulse {
 	int partner;               /* the other one, while pulses are looked for ... */
 	double kept_t, kept_delta; /* ... and where this one was then */
 };
+
+/* Duration and amplitude of this pulse on channel c. */
+static inline double joint_pulse_duration(
+	const struct joint_scene *s, const struct joint_pulse *p, int c)
+{
+	return joint_duration(s, p->delta, c) * exp(p->own[JOINT_WIDTH]);
+}
+static inline double joint_pulse_height(
+	const struct joint_scene *s, const struct joint_pulse *p, int c)
+{
+	return p->a * (c ? s->gain * exp(p->own[JOINT_RATIO]) : 1);
+}
 
 static inline double joint_delay_variance(const struct joint_pulse *p)
 {
@@ -159,30 +176,31 @@ void joint_pair_odds(
 double joint_work(const struct joint *joint);
 
 /* Of the pulses of the last fit: by which share their sum at sensor 2 exceeds gain times
- * that at sensor 1, and the standard error of this.  The fit of pulses that overlap takes
- * up a part of the share, which is too small then. */
+ * that at sensor 1, and the standard error of this, with the scatter of their ratios. The
+ * fit of pulses that overlap takes up a part of the share, which is too small then. */
 void joint_gain_error(const struct joint *joint, double *share, double *se);
 
-/* By which share a pulse is wider than one of its velocity, whatever the prior of widths,
- * and the standard error of this; at: its arrival; left: the share of its energy that one
- * wider by share leaves, over share^2. */
-struct joint_width {
+/* One deviation of a pulse, whatever its prior, and the standard error of this; at: its
+ * arrival; left: the share of its energy that a pulse with share leaves, over share^2. */
+struct joint_deviation {
 	double at, share, se, left;
 };
-/* Those of the pulses of the last fit; explained: by how much they reduce its chi-square.
- * Returns the number of pulses; 0: they are not known. */
-size_t joint_widths(struct joint *joint, struct joint_width *width, double *explained);
+/* Those of the pulses of the last fit: out[own] has room for them where the set has the
+ * bit 1 << own; explained: by how much they reduce its chi-square.  Returns the number of
+ * pulses; 0: they are not known. */
+size_t joint_deviations(struct joint *joint, unsigned set,
+	struct joint_deviation *const *out, double *explained);
 
-/* Standard deviation of the widths of n pulses from a straight line in time, beside that
- * of their errors, of maximum likelihood; 0 unless twice the logarithm of the ratio of
- * its likelihood to that of none exceeds certain. */
-enum { JOINT_WIDTHS_MAX = 256 };
-double joint_width_scatter(const struct joint_width *width, size_t n, double certain);
+/* Standard deviation of what n pulses have of their own from a straight line in time,
+ * beside that of its errors, of maximum likelihood; 0 unless twice the logarithm of the
+ * ratio of its likelihood to that of none exceeds certain. */
+enum { JOINT_SCATTER_MAX = 256 };
+double joint_scatter(int own, const struct joint_deviation *of, size_t n, double certain);
 
-/* Sets widths to the scatter of those of n pulses, and misfit to at least what three
- * standard deviations of them leave of a pulse. */
-void joint_set_widths(struct joint_scene *scene, double scatter,
-	const struct joint_width *width, size_t n, double misfit);
+/* Sets scatter[own] to this of n pulses, and misfit to at least what three standard
+ * deviations of it leave of a pulse. */
+void joint_set_scatter(struct joint_scene *scene, int own, double scatter,
+	const struct joint_deviation *of, size_t n, double misfit);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);

@@ -1,5 +1,6 @@
 /* joint_model.c - contributions of pulses, tones and offset to the record; see
  * joint_state.h */
+#include "num/sigmas.h"
 #include "signal/fit/joint_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,7 @@ struct joint *joint_new(void)
 
 	if (!j)
 		return NULL;
-	j->h = malloc(sizeof *j->h * NPAR * NPAR);
+	j->h = malloc(sizeof *j->h * 3 * OWN_MAX * NPAR);
 	j->factor = malloc(sizeof *j->factor * NPAR * NPAR);
 	j->bq = malloc(sizeof *j->bq * NPAR * 2 * BASIS_MAX);
 	for (int i = 0; i < JOINT_PULSES_MAX; i++)
@@ -75,7 +76,8 @@ enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scen
 {
 	double longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
 	double length = 2 * shape_reach(s->shape) * fmax(s->width, 1) *
-			joint_duration(s, fmax(longest, 0), 0);
+			joint_duration(s, fmax(longest, 0), 0) *
+			exp(SIGMAS_NEVER * s->scatter[JOINT_WIDTH]);
 	size_t support = (size_t)(length + 0.4 * s->duration) + 4;
 	double *at;
 
@@ -383,7 +385,7 @@ size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)
 static long pulse_window(const struct joint_scene *s, const struct joint_pulse *p, int c,
 	size_t n, size_t *len)
 {
-	double T = joint_duration(s, p->delta, c);
+	double T = joint_pulse_duration(s, p, c);
 	long first = shape_support(s->shape, p->t + (c ? p->delta : 0), T, len);
 	long last = first + (long)*len;
 
@@ -404,11 +406,11 @@ void joint_subtract(struct joint *j, const struct joint_pulse *p, double sign)
 		long first = pulse_window(s, p, c, j->n, &len);
 
 		shape_sample(s->shape, p->t + (c ? p->delta : 0),
-			joint_duration(s, p->delta, c), first, len, j->scratch, NULL,
+			joint_pulse_duration(s, p, c), first, len, j->scratch, NULL,
 			NULL);
 		joint_hide(j, c, first, len, j->scratch);
 		if (len)
-			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
+			add_scaled(j->e[c] + first, -sign * joint_pulse_height(s, p, c),
 				j->scratch, len);
 	}
 }
@@ -451,9 +453,10 @@ void joint_make_columns(struct joint *j, int i)
 
 	for (int c = 0; c < 2; c++) {
 		struct column *col = &j->col[i][c];
-		double T = joint_duration(s, p->delta, c);
-		double stretch = joint_duration(s, 0, c) / s->transit;
-		double a = p->a * (c ? s->gain : 1), *by_t, *by_T;
+		double T = joint_pulse_duration(s, p, c);
+		double stretch =
+			joint_duration(s, 0, c) / s->transit * exp(p->own[JOINT_WIDTH]);
+		double a = joint_pulse_height(s, p, c), *by_t, *by_T;
 
 		col->first = pulse_window(s, p, c, j->n, &col->n);
 		by_t = col->d[c];
@@ -464,7 +467,7 @@ void joint_make_columns(struct joint *j, int i)
 		/* T grows with t2 and falls with t1. */
 		turn_columns(by_t, by_T, a, c ? stretch : -stretch, col->n);
 		for (size_t k = 0; c && k < col->n; k++)
-			col->d[2][k] *= s->gain;
+			col->d[2][k] *= s->gain * exp(p->own[JOINT_RATIO]);
 		for (int k = 0; k < PAR; k++)
 			joint_hide(j, c, col->first, col->n, col->d[k]);
 	}
@@ -481,7 +484,7 @@ static int scene_is_sane(
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
-	/* The tolerance of moved() must keep T positive. */
+	/* The tolerance of joint_moved() must keep T positive. */
 	if (s->delta_min - JOINT_BEYOND * (s->delta_max - s->delta_min) <= -s->transit)
 		return 0;
 	for (int i = 0; i < m; i++)
@@ -511,6 +514,8 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	j->scene = *s;
 	j->m = m;
 	memcpy(j->pulse, pulses, (size_t)m * sizeof *pulses);
+	for (int i = 0; i < m; i++)
+		memset(j->pulse[i].own, 0, sizeof j->pulse[i].own);
 	for (int c = 0; c < 2; c++)
 		joint_hide(j, c, 0, n, j->e[c]);
 	make_basis(j);
@@ -535,7 +540,7 @@ void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double 
 
 	for (int c = 0; c < 2; c++) {
 		double *y = c ? y2 : y1, t0 = p->t + (c ? p->delta : 0);
-		double T = joint_duration(s, p->delta, c);
+		double T = joint_pulse_duration(s, p, c);
 		size_t len, chunk;
 		long first = pulse_window(s, p, c, n, &len);
 
@@ -544,7 +549,7 @@ void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double 
 			shape_sample(s->shape, t0, T, first + (long)done, chunk, part,
 				NULL, NULL);
 			add_scaled(y + first + (long)done,
-				sign * p->a * (c ? s->gain : 1), part, chunk);
+				sign * joint_pulse_height(s, p, c), part, chunk);
 		}
 	}
 }

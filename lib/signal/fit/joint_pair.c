@@ -25,8 +25,8 @@ static long make_excess(
 	const struct joint_scene *s = &j->scene;
 	const struct joint_pulse *p = &j->pulse[i];
 	const struct column *one = &j->col[i][c];
-	double T = joint_duration(s, p->delta, c), t0 = p->t + (c ? p->delta : 0);
-	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
+	double T = joint_pulse_duration(s, p, c), t0 = p->t + (c ? p->delta : 0);
+	double half = 0.5 * joint_pulse_height(s, p, c), *part = j->scratch;
 	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
 
 	to = from + (long)*n + (long)gap + 1;

@@ -12,6 +12,7 @@
 enum {
 	PAR = 3,
 	NPAR = PAR * JOINT_PULSES_MAX,
+	OWN_MAX = JOINT_OWN * JOINT_PULSES_MAX,
 	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1,
 	PAIR_GAPS = 12,
 	BASIS_ROOM = 4 * BASIS_MAX,
@@ -71,14 +72,16 @@ struct joint {
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	int all[JOINT_PULSES_MAX]; /* 0, 1, 2, ...: the set of all pulses */
-	double *h;                 /* NPAR * NPAR: normal matrix or its Cholesky factor */
+	double *h; /* 3 OWN_MAX * NPAR: normal matrix or its Cholesky factor, or
+		      joint_own.c's */
 	double *factor;
 	double energy;           /* e^T e of both channels, ... */
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], move[NPAR];
-	double work;                   /* samples of columns computed, since it is new */
-	double wide[JOINT_PULSES_MAX]; /* shares by which the pulses are wider */
+	double work; /* samples of columns computed, since it is new */
+	double own[JOINT_OWN]
+		  [JOINT_PULSES_MAX]; /* what a prior has moved the pulses by */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
@@ -148,6 +151,10 @@ void joint_hide(const struct joint *joint, int channel, long first, size_t n, do
 
 /* joint_step.c: the fit; pulses must have been subtracted */
 
+/* One step from old along move, limited to meaningful pulses. */
+struct joint_pulse joint_moved(
+	const struct joint *j, const struct joint_pulse *old, const double *move);
+
 /* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
 double joint_fit_set(
 	struct joint *j, const int *set, int m, int max_steps, double tolerance);
@@ -163,10 +170,13 @@ void joint_solve(const struct joint *j, int np, int start, double *x);
 /* Factor of the normal matrix of the pulses in set, with their columns. */
 enum num_status joint_factorise(struct joint *j, const int *set, int m);
 
-/* joint_width.c */
+/* joint_own.c */
 
-/* Takes the prior of widths into account; the residual must be projected. */
+/* Fits what pulses have of their own, with their priors; the errors must be known, and
+ * the residual projected. */
 void joint_relax(struct joint *j);
+/* Removes pulses that are insignificant once the others have something of their own. */
+void joint_prune_relaxed(struct joint *j);
 
 /* joint_pair.c */
 

@@ -117,8 +117,7 @@ void joint_solve(const struct joint *j, int np, int start, double *x)
 	}
 }
 
-/* One step from old along move, limited to meaningful pulses. */
-static struct joint_pulse moved(
+struct joint_pulse joint_moved(
 	const struct joint *j, const struct joint_pulse *old, const double *move)
 {
 	const struct joint_scene *s = &j->scene;
@@ -192,7 +191,7 @@ static void step_forth(struct joint *j, const int *set, int m, struct before *ol
 {
 	for (int x = 0; x < m; x++) {
 		old->pulse[x] = j->pulse[set[x]];
-		j->pulse[set[x]] = moved(j, &old->pulse[x], j->move + PAR * x);
+		j->pulse[set[x]] = joint_moved(j, &old->pulse[x], j->move + PAR * x);
 		swap_columns(j, set[x]);
 		joint_make_columns(j, set[x]);
 	}
@@ -307,26 +306,30 @@ void joint_fill_covariance(struct joint *j)
 
 void joint_gain_error(const struct joint *j, double *share, double *se)
 {
-	double off[2], var = 0;
+	double var = 0;
 
+	*share = 0;
 	for (int c = 0; c < 2; c++) {
-		double energy = 0, along = 0;
+		double energy = 0, along = 0, own = 0, scatter = 0;
 
 		for (int i = 0; i < j->m; i++) {
 			const struct column *a = &j->col[i][c];
+			double part = 0;
 
 			along += j->pulse[i].a * dot(a->d[2], j->r[c] + a->first, a->n);
 			for (int k = 0; k < j->m; k++) {
 				const struct column *b = &j->col[k][c];
 
-				energy += j->pulse[i].a * j->pulse[k].a *
-					  dot_within(a->d[2], a->n, b->d[2], b->n,
-						  b->first - a->first);
+				part += j->pulse[i].a * j->pulse[k].a *
+					dot_within(a->d[2], a->n, b->d[2], b->n,
+						a->first - b->first);
 			}
+			energy += part;
+			own += part * j->pulse[i].own[JOINT_RATIO];
+			scatter += pow(part * j->scene.scatter[JOINT_RATIO], 2);
 		}
-		off[c] = along / energy;
-		var += 1 / energy;
+		*share += (c ? along + own : -along) / energy;
+		var += 1 / energy + (c ? scatter / (energy * energy) : 0);
 	}
-	*share = off[1] - off[0];
 	*se = sqrt(var);
 }

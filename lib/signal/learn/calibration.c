@@ -82,7 +82,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.threshold = c->threshold,
 		.threshold_near = c->threshold_near,
 		.misfit = c->misfit,
-		.widths = c->widths,
+		.scatter = { c->scatter[JOINT_WIDTH], c->scatter[JOINT_RATIO] },
 		.tone_variance = c->tone_variance,
 		.tone_hop = (double)c->tone_hop,
 		.low = c->whitening.low,

@@ -83,9 +83,9 @@ struct calibration {
 	double crosstalk[2]; /* share of the other channel in either, with the sign of
 				sensor 2 as separated */
 	double transit;      /* samples between the sensors; INFINITY if unknown */
-	double delta_min, delta_max;      /* samples around shift */
-	double threshold, threshold_near; /* thresholds of joint.h */
-	double misfit, widths; /* of joint.h: error of the shape, and scatter */
+	double delta_min, delta_max;       /* samples around shift */
+	double threshold, threshold_near;  /* thresholds of joint.h */
+	double misfit, scatter[JOINT_OWN]; /* of joint.h */
 	int far;    /* pulses near the limits of the range of delays that was searched */
 	int events; /* pulses to which the shape was fitted, and ... */
 	int isolated;       /* ... those of them that stand alone, ... */

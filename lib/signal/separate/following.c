@@ -1,4 +1,4 @@
-/* following.c - flow, gain and widths followed by pulses */
+/* following.c - flow, gain and what pulses have of their own, followed by them */
 #include "num/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -103,23 +103,33 @@ void separate_set_gain(struct separate *s, long long from)
 					 separate_noise_at(s, c, at[c]);
 }
 
-/* The scatter of the widths of the last pulses that stand alone.  One that was found is
- * kept until these show another: fewer of them may not be significant. */
-static void follow_width(struct separate *s, double time)
+/* The scatter of what the last pulses that stand alone have of their own.  One that was
+ * found is kept until these show another: fewer of them may not be significant. */
+static void follow_scatter(struct separate *s, const struct account *a)
 {
-	struct joint_width *last = &s->width[s->widths % TRACKED];
-	double explained, scatter;
-	size_t n;
+	double misfit = s->cal.misfit;
 
-	if (joint_widths(s->joint, last, &explained) != 1)
-		return;
-	last->at = time;
-	n = ++s->widths < TRACKED ? s->widths : TRACKED;
-	scatter = n >= ENOUGH
-			  ? joint_width_scatter(s->width, n, SIGMAS_NEVER * SIGMAS_NEVER)
-			  : 0;
-	if (scatter > 0)
-		joint_set_widths(&s->scene, scatter, s->width, n, s->cal.misfit);
+	for (int own = 0; own < JOINT_OWN; own++) {
+		struct joint_deviation *out[JOINT_OWN], *kept = s->own[own];
+		struct joint_deviation *last = out[own] = &kept[s->owns[own] % TRACKED];
+		double explained, scatter;
+		size_t n;
+
+		if (joint_deviations(s->joint, 1U << own, out, &explained) != 1)
+			continue;
+		last->at = (double)a->from + a->pulse[0].t;
+		/* The ratio itself, whatever the gain followed meanwhile. */
+		if (own == JOINT_RATIO)
+			last->share += log(separate_gain_at(s, last->at));
+		n = ++s->owns[own] < TRACKED ? s->owns[own] : TRACKED;
+		scatter = n < ENOUGH ? 0
+				     : joint_scatter(
+					       own, kept, n, SIGMAS_NEVER * SIGMAS_NEVER);
+		if (!(scatter > 0))
+			continue;
+		joint_set_scatter(&s->scene, own, scatter, kept, n, misfit);
+		misfit = s->scene.misfit;
+	}
 }
 
 /* Share of the false alarms that noise may take for a pulse to follow: by following those
@@ -137,7 +147,7 @@ void separate_follow(struct separate *s, const struct account *a)
 		is_clear(s, &a->pulse[0])) {
 		if (separate_is_range_free(s))
 			follow_delay(s, a->pulse[0].delta);
-		follow_width(s, (double)a->from + a->pulse[0].t);
+		follow_scatter(s, a);
 	}
 	if (a->m > 0 && isnan(s->par.known.gain))
 		follow_gain(s, (double)a->from + a->pulse[0].t);

@@ -150,7 +150,7 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "threshold", DBL_MIN, &c->threshold, 1);
 	reals(w, "threshold_near", DBL_MIN, &c->threshold_near, 1);
 	reals(w, "misfit", 0, &c->misfit, 1);
-	reals(w, "widths", 0, &c->widths, 1);
+	reals(w, "scatter", 0, c->scatter, JOINT_OWN);
 	c->events = (int)whole(w, "events", 0, INT_MAX, c->events);
 	c->dense = flag(w, "dense", c->dense);
 	reals(w, "chi2", 0, &c->chi2, 1);

@@ -153,7 +153,7 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 		.level_samples = s->levels,
 		.common = { s->common.correlation, s->common.left[0], s->common.left[1] },
 		.second = s->quadrature };
-	view->cal.widths = s->scene.widths;
+	memcpy(view->cal.scatter, s->scene.scatter, sizeof view->cal.scatter);
 	view->cal.misfit = s->scene.misfit;
 	view->cal.gain *= separate_gain_at(s, (double)s->done) * s->cal.noise[1] /
 			  (fabs(s->cal.gain) * s->cal.noise[0]);

@@ -111,8 +111,9 @@ struct separate {
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	struct joint_width width[TRACKED]; /* the same of their widths */
-	size_t widths;
+	struct joint_deviation own[JOINT_OWN]
+				  [TRACKED]; /* what they had of their own, ... */
+	size_t owns[JOINT_OWN];              /* ... and how many of it so far */
 	/* Of the last GAINS windows or fewer: sums of the relative deviations of the
 	 * gain in standard errors, of these by their weights, of the weights, and of
 	 * their times. */
