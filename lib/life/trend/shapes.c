@@ -17,13 +17,13 @@
  * their families alone; the others were rounded.  The weights of the exponentials and of
  * saturation with power 1/2 were swept again later. */
 static const struct bank_shape table[] = {
-	{ .family = BANK_LINEAR, .log_prior = 3.5 },
-	{ .family = BANK_RATE, .par = 1, .log_prior = 0.6 },
+	{ .family = BANK_LINEAR, .log_prior = 2.8 },
+	{ .family = BANK_RATE, .par = 1, .log_prior = 1.3 },
 	{ .family = BANK_RATE, .par = 2, .log_prior = 1 },
 	{ .family = BANK_RATE, .par = 3, .log_prior = -4.1 },
 	{ .family = BANK_EXPONENTIAL, .scale = 0.05, .par = 1, .log_prior = 1.1 },
 	{ .family = BANK_EXPONENTIAL, .scale = 0.12, .par = 1, .log_prior = -0.8 },
-	{ .family = BANK_POWER, .scale = 0.05, .par = -1, .log_prior = 1 },
+	{ .family = BANK_POWER, .scale = 0.05, .par = -1, .log_prior = 0.3 },
 	{ .family = BANK_POWER, .scale = 0.3, .par = 1.5, .log_prior = -2.8 },
 	{ .family = BANK_POWER, .scale = 0.3, .par = 2, .log_prior = 3.1 },
 	SATURATING(0, 0.99, 1, -2),
