@@ -19,7 +19,7 @@
  * first damage rate and of the root of time with exact tangents: see "Weights with exact
  * tangents" in doc/benchmarks.md. */
 static const struct bank_shape table[] = {
-	{ .family = BANK_LINEAR, .log_prior = 2.8 },
+	{ .family = BANK_LINEAR, .log_prior = 3.5 },
 	{ .family = BANK_RATE, .par = 1, .log_prior = 1.3 },
 	{ .family = BANK_RATE, .par = 2, .log_prior = 1 },
 	{ .family = BANK_RATE, .par = 3, .log_prior = -4.1 },
