@@ -15,8 +15,8 @@
  * measured series outside of 0.88 to 0.93 and for fifths of theirs outside of 0.12 to
  * 0.25.  Coordinates of little weight were dropped or, with a weight below -2, serve
  * their families alone; the others were rounded.  The weights of the exponentials and of
- * saturation with power 1/2 were swept again later, those of the straight line, of the
- * first damage rate and of the root of time with exact tangents: see "Weights with exact
+ * saturation with power 1/2 were swept again later, those of the first damage rate and of
+ * the root of time with exact tangents: see "Weights with exact
  * tangents" in doc/benchmarks.md. */
 static const struct bank_shape table[] = {
 	{ .family = BANK_LINEAR, .log_prior = 3.5 },
