@@ -34,7 +34,7 @@ static const double HALT = 3.5;
 /* Noise, as a share of the range to the threshold, below which no coordinate describes
  * the wear: else readings without noise, or all equal, would be foretold with certainty:
  * see "Least noise" in doc/trends.md. */
-static const double FINEST = 6e-4;
+static const double FINEST = 7.5e-4;
 /* Turn of a tangent up to which it follows to second order.  With .125 the CRPS is that
  * of exact tangents to .1 % (60 paths of each kind of tests/long/lives.c and of 32
  * others), and the time of a row less by a fifth. */

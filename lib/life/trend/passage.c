@@ -28,13 +28,13 @@ static const double UNLIKELY = 1e-3;
  * a CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 0.75, 0.24, 16 }, { 0.5, 0.033, 1.3 },
+} future[] = { { 2.5, 0.24, 3.5 }, { 0.65, 0.27, 16 }, { 0.5, 0.033, 1.3 },
 	{ 0.5, 0.18, 3 } };
 
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
 static const double WANDERING = 0.4;
-static const double GROWTH_SD = 2.5; /* of its logarithm */
+static const double GROWTH_SD = 2; /* of its logarithm */
 /* Mean and sd of the logarithm of the factor by which a fall of the rate lengthens the
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
@@ -46,7 +46,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * the time has the sd STRAY, and its median is LEAN less: most wear bends more than its
  * coordinate, because straight coordinates have more weight.  Both were swept: see
  * "Stray and lean" in doc/trends.md. */
-static const double STRAY = 0.2, LEAN = 0.05;
+static const double STRAY = 0.18, LEAN = 0.05;
 
 struct bank_chances {
 	int n;
