@@ -8,7 +8,7 @@
 	}
 
 /* The weights and the changes of regime to come (passage.c) were chosen together (scores:
- * doc/trends.md) by a random search over every other of 31 measured series, the
+ * doc/benchmarks.md) by a random search over every other of 31 measured series, the
  * first 13 kinds of tests/long/lives.c and the sigmoid, 24 to 40 paths of each with other
  * seeds, and 30 pumps of scripts/synthetic-pump with other seeds.  It minimised the mean
  * logarithm of the CRPS, with penalties for a coverage below 0.83 of any kind, for
@@ -16,8 +16,8 @@
  * 0.25.  Coordinates of little weight were dropped or, with a weight below -2, serve
  * their families alone; the others were rounded.  The weights of the exponentials and of
  * saturation with power 1/2 were swept again later, those of the first damage rate and of
- * the root of time with exact tangents: see "Weights with exact
- * tangents" in doc/trends.md. */
+ * the root of time with exact tangents: see "Weights with exact tangents" in
+ * doc/trends.md. */
 static const struct bank_shape table[] = {
 	{ .family = BANK_LINEAR, .log_prior = 3.5 },
 	{ .family = BANK_RATE, .par = 1, .log_prior = 1.3 },
