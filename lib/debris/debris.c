@@ -127,14 +127,19 @@ void debris_contact(
 
 enum debris_status debris_load(struct debris *d, const double *pressure)
 {
-	size_t n = (size_t)d->par.stress.nx * (size_t)d->par.stress.ny;
+	const struct stress_span *loads;
+	size_t count;
 
 	if (stress_load(d->stress, pressure))
 		return DEBRIS_NUMBERS;
-	for (size_t i = lanes_next(pressure, 0, n); i < n;
-		i = lanes_next(pressure, i + 1, n))
-		if (pressure[i] < 0)
-			return DEBRIS_PULL;
+	loads = stress_loads(d->stress, &count);
+	for (size_t i = 0; i < count; i++) {
+		const double *row = pressure + grid_at(d->par.stress.nx, 0, loads[i].y);
+
+		for (int x = loads[i].begin; x < loads[i].end; x++)
+			if (row[x] < 0)
+				return DEBRIS_PULL;
+	}
 	return DEBRIS_OK;
 }
 

@@ -45,7 +45,8 @@ struct footprints {
 	double squares;        /* of the relative errors of stresses below these */
 	struct footprint *list;
 	size_t count;
-	size_t spare_room, region_room, cell_room, next_room, list_room;
+	size_t node_room, spare_room, region_room, cell_room, next_room, list_room,
+		span_room;
 };
 
 struct footprints *footprints_new(const struct stress_par *par)
@@ -56,12 +57,9 @@ struct footprints *footprints_new(const struct stress_par *par)
 	if (!f)
 		return NULL;
 	f->par = *par;
-	/* Few cells of a large grid fail: most of this is never touched. */
-	f->node = malloc(nx * ny * sizeof *f->node);
 	f->place = malloc((nx > ny ? nx : ny) * sizeof *f->place);
-	f->span = malloc(ny * ((nx + 1) / 2) * sizeof *f->span);
 	f->below = point_sum_new(par);
-	if (!f->node || !f->place || !f->span || !f->below) {
+	if (!f->place || !f->below) {
 		footprints_free(f);
 		return NULL;
 	}
@@ -414,18 +412,33 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 	}
 }
 
+/* The cells that fail at the surface. */
+static enum num_status find_nodes(struct footprints *f, struct stress *stress)
+{
+	size_t spans, most = 0;
+
+	if (room_for(&f->span, &f->span_room, stress_spans_max(stress), sizeof *f->span))
+		return NUM_MEMORY;
+	spans = stress_reach_surface(stress, f->yield, f->span);
+	for (size_t i = 0; i < spans; i++)
+		most += (size_t)(f->span[i].end - f->span[i].begin);
+	if (room_for(&f->node, &f->node_room, most + 1, sizeof *f->node))
+		return NUM_MEMORY;
+	return stress_above(stress, f->yield, f->span, spans, f->node, &f->nodes);
+}
+
 enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	const double *pressure, double yield, const struct footprint **list,
 	size_t *count)
 {
-	size_t spans = stress_reach_surface(stress, yield, f->span), at = 0;
+	size_t at = 0, runs;
+	const struct stress_span *loads = stress_loads(stress, &runs);
 
 	*count = 0;
 	f->yield = yield;
-	if (stress_above(stress, yield, f->span, spans, f->node, &f->nodes) ||
-		find_regions(f))
+	if (find_nodes(f, stress) || find_regions(f) ||
+		point_sum_load(f->below, pressure, loads, runs))
 		return NUM_MEMORY;
-	point_sum_load(f->below, pressure);
 	f->passed = f->checks = f->squares = 0;
 	for (size_t i = 0; i < f->count; at += f->list[i++].cells)
 		measure(f, &f->list[i], f->cell + at);

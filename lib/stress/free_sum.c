@@ -56,7 +56,9 @@ struct free_sum {
 	int nx, ny, full;
 	struct pool *pool;
 	const double *pressure;
-	double scale;          /* of loads over pressures */
+	double scale;                    /* of loads over pressures */
+	const struct stress_span *loads; /* runs of loaded cells */
+	size_t load_count;
 	struct stress_box box; /* of the loads */
 	struct sum_work work;
 	struct window_kept kept;
@@ -99,10 +101,12 @@ struct sum_work free_sum_work(const struct free_sum *s)
 }
 
 void free_sum_load(struct free_sum *s, const double *pressure, double scale,
-	const struct stress_box *box)
+	const struct stress_span *loads, size_t count, const struct stress_box *box)
 {
 	s->pressure = pressure;
 	s->scale = scale;
+	s->loads = loads;
+	s->load_count = count;
 	s->box = *box;
 }
 
@@ -526,7 +530,7 @@ static enum num_status narrow_want(struct free_sum *s, const struct box *b,
 	struct stress_span **span)
 {
 	struct narrow n = { b->wx, b->wy, b->x0, b->y0, corner(s, b), (size_t)s->nx,
-		s->scale, REACH, NULL, far, want->limit };
+		s->loads, s->load_count, s->scale, REACH, NULL, far, want->limit };
 
 	if (know_sizes(s, want))
 		return NUM_MEMORY;

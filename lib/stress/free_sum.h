@@ -36,10 +36,10 @@ struct free_sum *free_sum_new(
 	const struct influence_par *par, int nx, int ny, int full, struct pool *pool);
 void free_sum_free(struct free_sum *s);
 
-/* Sets the pressure, which is borrowed until the next call; the loads are scale times it,
- * and none is outside the box. */
+/* Sets the pressure and the runs of its cells that are loaded, row by row, both borrowed
+ * until the next call; the loads are scale times it, and none is outside the box. */
 void free_sum_load(struct free_sum *s, const double *pressure, double scale,
-	const struct stress_box *box);
+	const struct stress_span *loads, size_t count, const struct stress_box *box);
 /* Stress at depth z. */
 enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want);
 

@@ -43,18 +43,22 @@ struct narrowing {
 static enum num_status list_loads(struct narrowing *w)
 {
 	const struct narrow *n = w->n;
-	size_t count = 0, cells = (size_t)n->wx;
+	size_t count = 0, k = 0;
 
 	for (int y = 0; y < n->wy; y++) {
 		const double *row = n->load + (size_t)y * n->stride;
 
-		if (room_for(&w->load, &w->load_room, count + cells, sizeof *w->load))
-			return NUM_MEMORY;
 		w->row[y] = count;
-		for (size_t x = lanes_next(row, 0, cells); x < cells;
-			x = lanes_next(row, x + 1, cells))
-			w->load[count++] =
-				(struct load){ (int)x, fabs(n->scale * row[x]) };
+		for (; k < n->runs && n->run[k].y == y + n->y0; k++) {
+			int begin = n->run[k].begin - n->x0, end = n->run[k].end - n->x0;
+
+			if (room_for(&w->load, &w->load_room,
+				    count + (size_t)(end - begin), sizeof *w->load))
+				return NUM_MEMORY;
+			for (int x = begin; x < end; x++)
+				w->load[count++] =
+					(struct load){ x, fabs(n->scale * row[x]) };
+		}
 	}
 	w->row[n->wy] = count;
 	return NUM_OK;

@@ -15,6 +15,9 @@ struct narrow {
 	int wx, wy, x0, y0; /* cells, and those that nodes are counted from */
 	const double *load; /* scale times, in rows of stride */
 	size_t stride;
+	const struct stress_span
+		*run; /* of loaded cells, row by row, of the whole grid */
+	size_t runs;
 	double scale;
 	int reach;         /* cells, along either axis */
 	const float *size; /* equivalent stress by a unit load, in rows of 2 reach + 1 */

@@ -1,6 +1,7 @@
 #include "stress/point_sum.h"
 #include "num/lanes.h"
 #include "num/lesser.h"
+#include "num/room.h"
 #include "stress/influence.h"
 
 #include <math.h>
@@ -154,6 +155,7 @@ struct point_sum {
 	/* The loaded cells of each smallest square, those of square i from begin[i] to
 	 * begin[i + 1]. */
 	struct cell *loaded;
+	size_t loaded_room;
 	size_t *begin;
 	int nx, ny; /* smallest squares */
 	struct size size[SIZES];
@@ -282,9 +284,7 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 	blocks = (size_t)s->nx * (size_t)s->ny;
 	s->squares = next = malloc(count * sizeof *s->squares);
 	s->begin = calloc(blocks + 1, sizeof *s->begin);
-	/* Few cells of a large grid are loaded: most of this is never touched. */
-	s->loaded = malloc((size_t)par->nx * (size_t)par->ny * sizeof *s->loaded);
-	if (!next || !s->begin || !s->loaded || !new_tiles(s) || !new_elements(s)) {
+	if (!next || !s->begin || !new_tiles(s) || !new_elements(s)) {
 		point_sum_free(s);
 		return NULL;
 	}
@@ -356,17 +356,6 @@ static void put_square(
 	to->y[i] = sum_y / load;
 }
 
-/* The first smallest square of a row, from x on, that is loaded. */
-static int next_block(const struct point_sum *s, int y, int x)
-{
-	size_t nx = (size_t)s->par.nx, first = nx;
-
-	for (int i = y * BLOCK; i < lesser_int((y + 1) * BLOCK, s->par.ny); i++)
-		first = lesser(first, lanes_next(s->pressure + (size_t)i * nx,
-					      (size_t)x * BLOCK, first));
-	return first < nx ? (int)(first / BLOCK) : s->nx;
-}
-
 /* Offsets in a row. */
 static int offsets_across(const struct point_sum *s)
 {
@@ -401,23 +390,37 @@ static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n
 	return n;
 }
 
-static double total_of(const double *x, size_t n)
+/* Adds up the loads and marks the smallest squares that hold some; returns how many
+ * cells are loaded. */
+static size_t find_blocks(
+	struct point_sum *s, const struct stress_span *loads, size_t count)
 {
-	lanes sum = lanes_all(0);
+	size_t cells = 0;
 
-	for (size_t i = lanes_next(x, 0, n) / 2 * 2; i < n;
-		i = lanes_next(x, i + 2, n) / 2 * 2)
-		lanes_add(&sum, lanes_load(x + i, i + 1 < n ? 2 : 1), i + 1 < n ? 2 : 1);
-	return sum[0] + sum[1];
+	memset(s->begin, 0, (size_t)s->nx * (size_t)s->ny * sizeof *s->begin);
+	s->total = 0;
+	for (size_t k = 0; k < count; k++) {
+		size_t row = (size_t)(loads[k].y / BLOCK) * (size_t)s->nx;
+
+		cells += (size_t)(loads[k].end - loads[k].begin);
+		for (int x = loads[k].begin; x < loads[k].end; x++)
+			s->total += pressure_at(s, x, loads[k].y);
+		for (int x = loads[k].begin / BLOCK; x <= (loads[k].end - 1) / BLOCK; x++)
+			s->begin[row + (size_t)x] = 1;
+	}
+	return cells;
 }
 
-void point_sum_load(struct point_sum *s, const double *pressure)
+enum num_status point_sum_load(struct point_sum *s, const double *pressure,
+	const struct stress_span *loads, size_t runs)
 {
 	size_t n = 0, block = 0, count = 0;
 
 	s->pressure = pressure;
 	s->point.ix = -1;
-	s->total = total_of(pressure, (size_t)s->par.nx * (size_t)s->par.ny);
+	if (room_for(&s->loaded, &s->loaded_room, find_blocks(s, loads, runs),
+		    sizeof *s->loaded))
+		return NUM_MEMORY;
 	s->share = (double)s->dx * s->dy / (2 * M_PI * s->total);
 	for (int l = 0; l < s->sizes; l++)
 		count += (size_t)s->size[l].nx * (size_t)s->size[l].ny;
@@ -425,12 +428,12 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	for (int i = 0; i < s->tiles; i++)
 		s->tile[i].row = -1;
 	for (int y = 0; y < s->ny; y++)
-		for (int x = 0, next = next_block(s, y, 0); x < s->nx; x++) {
-			s->begin[block++] = n;
-			if (x < next)
-				continue;
-			n = list_cells(s, x, y, n);
-			next = next_block(s, y, x + 1);
+		for (int x = 0; x < s->nx; x++, block++) {
+			int loaded = s->begin[block] > 0;
+
+			s->begin[block] = n;
+			if (loaded)
+				n = list_cells(s, x, y, n);
 		}
 	s->begin[block] = n;
 	for (struct size *size = s->size; size + 1 < s->size + s->sizes; size++)
@@ -443,6 +446,7 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 					sum_four(q->load * q->x),
 					sum_four(q->load * q->y));
 		}
+	return NUM_OK;
 }
 
 /* 1 / sqrt(x) to 5e-6: a line through the logarithm, which the bits of a float are

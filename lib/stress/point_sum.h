@@ -11,14 +11,17 @@
 #ifndef STRESS_POINT_SUM_H
 #define STRESS_POINT_SUM_H
 
+#include "num/status.h"
 #include "stress/stress.h"
 
 struct point_sum;
 
 struct point_sum *point_sum_new(const struct stress_par *par); /* NULL: no memory */
 void point_sum_free(struct point_sum *s);
-/* Takes a pressure, borrowed until the next one. */
-void point_sum_load(struct point_sum *s, const double *pressure);
+/* Takes a pressure, borrowed until the next one, and the runs of its loaded cells, row by
+ * row. */
+enum num_status point_sum_load(struct point_sum *s, const double *pressure,
+	const struct stress_span *loads, size_t count);
 /* The depths, k = 0, 1, ...; above the first one is the surface, k = -1. */
 double point_sum_depth(const struct point_sum *s, int k);
 /* The last depth that is not below z; 0 where none is. */

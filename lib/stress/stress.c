@@ -34,8 +34,10 @@ struct stress {
 	const double *given; /* pressure of the last stress_load() */
 	double *lent;        /* periodic: the same in units, which wave uses */
 	double total;        /* N */
-	int loaded;          /* some cell is */
-	int side, bx, by;    /* cells to a block's side, blocks */
+	struct stress_span
+		*loads; /* runs of loaded cells: later passes read these alone */
+	size_t load_count;
+	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
 	double *row_load;      /* of each row of blocks */
 	double *beyond;        /* bound for the loads of rows more than so many away */
@@ -127,13 +129,16 @@ struct stress *stress_new(const struct stress_par *par)
 	s->begin = calloc((size_t)s->by + 1, sizeof *s->begin);
 	s->low_x = calloc(5 * (size_t)s->bx * (size_t)s->by, sizeof *s->low_x);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
+	/* Few cells of a large grid are loaded: most of this is never touched. */
+	s->loads = malloc((n + (size_t)par->ny) / 2 * sizeof *s->loads);
 	if (par->periodic) {
 		s->lent = fft_alloc(n);
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	} else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	if (!s->blocks || !s->row_load || !s->beyond || !s->begin || !s->low_x ||
-		!s->held || (par->periodic && !s->lent) || (!s->wave && !s->free)) {
+		!s->held || !s->loads || (par->periodic && !s->lent) ||
+		(!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -159,6 +164,7 @@ void stress_free(struct stress *s)
 	free(s->begin);
 	free(s->low_x);
 	free(s->held);
+	free(s->loads);
 	fft_free(s->lent);
 	free(s);
 }
@@ -178,20 +184,44 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
+static void list_loads(struct stress *s, const double *pressure)
+{
+	size_t nx = (size_t)s->par.nx;
+
+	s->load_count = 0;
+	for (int y = 0; y < s->par.ny; y++) {
+		const double *row = pressure + (size_t)y * nx;
+
+		for (size_t x = lanes_next(row, 0, nx); x < nx;
+			x = lanes_next(row, x, nx)) {
+			size_t begin = x;
+
+			while (x < nx && row[x] != 0)
+				x++;
+			s->loads[s->load_count++] =
+				(struct stress_span){ y, (int)begin, (int)x };
+		}
+	}
+}
+
 /* Power of two at or below the largest magnitude, and large enough for its inverse to be
  * finite; 0 if a value is not finite. */
-static double unit_of(const double *pressure, size_t n)
+static double unit_of(const struct stress *s, const double *pressure)
 {
 	double largest = 0;
 	int exponent;
 
-	for (size_t i = lanes_next(pressure, 0, n); i < n;
-		i = lanes_next(pressure, i + 1, n)) {
-		double p = fabs(pressure[i]);
+	for (size_t i = 0; i < s->load_count; i++) {
+		const struct stress_span *run = &s->loads[i];
+		const double *row = pressure + (size_t)run->y * (size_t)s->par.nx;
 
-		if (!(p <= DBL_MAX))
-			return 0;
-		largest = p > largest ? p : largest;
+		for (int x = run->begin; x < run->end; x++) {
+			double p = fabs(row[x]);
+
+			if (!(p <= DBL_MAX))
+				return 0;
+			largest = p > largest ? p : largest;
+		}
 	}
 	frexp(largest, &exponent);
 	return largest > 0 ? fmax(ldexp(0.5, exponent), DBL_MIN) : 1;
@@ -229,35 +259,46 @@ static void list_blocks(struct stress *s)
 enum num_status stress_load(struct stress *s, const double *pressure)
 {
 	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
-	double area = s->par.dx * s->par.dy, unit = unit_of(pressure, nx * ny);
+	double area = s->par.dx * s->par.dy, unit;
 
+	list_loads(s, pressure);
+	unit = unit_of(s, pressure);
 	if (unit == 0) {
+		s->load_count = 0;
 		return NUM_DOMAIN;
 	}
 	s->unit = unit;
 	s->given = pressure;
 	s->total = 0;
-	s->loaded = 0;
 	s->held_depth = INFINITY;
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
-	for (size_t y = 0; y < ny; y++)
-		for (size_t x = lanes_next(pressure + y * nx, 0, nx); x < nx;
-			x = lanes_next(pressure + y * nx, x + 1, nx)) {
-			double p = pressure[y * nx + x] / unit;
+	for (size_t i = 0; i < s->load_count; i++) {
+		const struct stress_span *run = &s->loads[i];
+		const double *row = pressure + (size_t)run->y * nx;
 
-			s->loaded = 1;
+		for (int x = run->begin; x < run->end; x++) {
+			double p = row[x] / unit;
+
 			s->total += p * area * unit;
-			add_to_block(s, (int)x, (int)y, fabs(p) * area);
+			add_to_block(s, x, run->y, fabs(p) * area);
 		}
+	}
 	list_blocks(s);
 	if (s->free) {
-		free_sum_load(s->free, pressure, 1 / unit, &s->box);
+		free_sum_load(
+			s->free, pressure, 1 / unit, s->loads, s->load_count, &s->box);
 		return NUM_OK;
 	}
 	for (size_t i = 0; i < nx * ny; i++)
 		s->lent[i] = pressure[i] / unit;
 	wave_sum_load(s->wave, s->lent);
 	return NUM_OK;
+}
+
+const struct stress_span *stress_loads(const struct stress *s, size_t *count)
+{
+	*count = s->load_count;
+	return s->loads;
 }
 
 struct stress_work stress_work(const struct stress *s)
@@ -376,7 +417,8 @@ static size_t reach(struct stress *s, double z, double limit, struct stress_span
 {
 	size_t count = 0;
 
-	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
+	if (s->load_count == 0 ||
+		(s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
 		size_t first = count, width;
@@ -593,7 +635,8 @@ enum num_status stress_above(struct stress *s, double limit,
 		.size = equivalent,
 		.limit = limit / s->unit,
 		.context = &t };
-	enum num_status status = count > 0 && s->loaded ? sum(s, 0, &want) : NUM_OK;
+	enum num_status status =
+		count > 0 && s->load_count > 0 ? sum(s, 0, &want) : NUM_OK;
 
 	*found = t.found;
 	return status;
@@ -609,7 +652,7 @@ enum num_status stress_at(struct stress *s, double z, const struct stress_span *
 		.put = take_equivalent,
 		.context = &t };
 
-	if (count > 0 && s->loaded)
+	if (count > 0 && s->load_count > 0)
 		return sum(s, z, &want);
 	for (size_t i = 0; i < count; i++)
 		memset(value + (size_t)span[i].y * (size_t)s->par.nx + span[i].begin, 0,
@@ -633,7 +676,7 @@ enum num_status stress_tensor(struct stress *s, double z, double *tensor)
 		return NUM_MEMORY;
 	for (int y = 0; y < s->par.ny; y++)
 		span[y] = (struct stress_span){ y, 0, s->par.nx };
-	if (s->loaded)
+	if (s->load_count > 0)
 		status = sum(s, z, &want);
 	else {
 		memset(tensor, 0, STRESS_COMPONENTS * n * sizeof *tensor);

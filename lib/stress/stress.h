@@ -64,6 +64,10 @@ void stress_free(struct stress *s);
  * not finite. */
 enum num_status stress_load(struct stress *s, const double *pressure);
 
+/* Runs of cells of that pressure that is not zero, row by row; valid until the next
+ * call. */
+const struct stress_span *stress_loads(const struct stress *s, size_t *count);
+
 /* Finds spans of nodes whose equivalent stress at depth z may exceed limit; all other
  * nodes are below the limit at this and every greater depth.  span has room for
  * stress_spans_max().  The bound is a sum of the equivalent stresses of blocks of loads,

@@ -658,7 +658,7 @@ static void test_limit(int few, int axis)
 		for (int i = 0; i < 16; i++)
 			p[(k * 7919 + k * k * 31) % (CELLS - 4 * SIDE) + i % 4 +
 				i / 4 * SIDE] = 0.5 + 0.25 * (k % 3);
-	free_sum_load(s, p, 1, &box);
+	free_sum_load(s, p, 1, span, SIDE, &box);
 	free_sum_at(s, 0, &want);
 	want.context = &r;
 	want.size = size_of;
@@ -730,6 +730,8 @@ static void test_points(double oblong)
 	struct stress_span span[SIDE];
 	size_t middle[BUMPS];
 	double all = 0, deep = 0, count = 0;
+	const struct stress_span *loads;
+	size_t runs;
 	struct stress *s;
 	struct point_sum *points;
 
@@ -753,7 +755,8 @@ static void test_points(double oblong)
 			}
 	}
 	stress_load(s, p);
-	point_sum_load(points, p);
+	loads = stress_loads(s, &runs);
+	point_sum_load(points, p, loads, runs);
 	for (int k = 0; point_sum_depth(points, k) < SIDE; k++) {
 		double z = point_sum_depth(points, k);
 
