@@ -520,4 +520,14 @@ rows mixed.tsv >a
 duet --instrument mixed-rig.tsv mixed.au >again.tsv
 rows again.tsv >b
 same "a kept instrument has the crosstalk" a b
+# 5 cm are 39.27 samples at this velocity.  With the duration of 39 samples all velocities
+# would be out by nine standard errors; what is learned of the gain alone is some tenths.
+sensorsim --uniform 100um:100um --number 200 --burst 1 --span 1ms --period 100ms --spacing 5cm \
+	--snr 40dB --seed 106 --truth truth.tsv |
+	duet --gain 1 --spacing 5cm --pulse sine --pulse-duration 10ms >found.tsv
+column velocity truth.tsv >a
+column velocity found.tsv | paste a - >b
+column velocity_se found.tsv | paste b - >c
+near "a given duration is that of the mean particle, between two samples" \
+	"$(awk '{ sum += ($2 - $1) / $3 } END { print sum / NR }' c)" 0 0.7
 done_testing

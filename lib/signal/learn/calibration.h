@@ -83,6 +83,7 @@ struct calibration {
 	double crosstalk[2]; /* share of the other channel in either, with the sign of
 				sensor 2 as separated */
 	double transit;      /* samples between the sensors; INFINITY if unknown */
+	double lag;          /* the same of the mean particle, not rounded */
 	double delta_min, delta_max;       /* samples around shift */
 	double threshold, threshold_near;  /* thresholds of joint.h */
 	double misfit, scatter[JOINT_OWN]; /* of joint.h */

@@ -147,6 +147,7 @@ static enum separate_status find_lag(const struct record *rec, struct calibratio
 		return SEPARATE_NO_LAG;
 	if (!(lag < last))
 		return isnan(rec->par->lag) ? SEPARATE_NO_LAG : SEPARATE_FAR;
+	c->lag = lag;
 	c->shift = (long)floor(lag + 0.5);
 	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
 	return SEPARATE_OK;
@@ -309,6 +310,7 @@ static enum separate_status find_lag_by_means(
 		status = check_lag(&means, means.y1, means.y2, &other);
 	if (status == SEPARATE_OK) {
 		c->correlation = other.correlation;
+		c->lag = other.lag * (double)box;
 		c->shift = other.shift * (long)box;
 		c->transit = other.transit * (double)box;
 	}
@@ -577,7 +579,7 @@ static enum separate_status set_peak(const double *raw, size_t n, double *work,
 enum separate_status measure(struct look *look, const double *raw, double *y1, double *y2,
 	size_t n, double *work, struct calibration *c)
 {
-	const struct calibrate_par *par = look->par;
+	struct calibrate_par known = *look->par, *par = &known;
 	const int first =
 		look->first && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	struct record rec = {
@@ -604,6 +606,9 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	if (status != SEPARATE_OK)
 		return status;
 	align(&rec, c);
+	if (c->shift >
+		0) /* the duration of c is that of a transit time of whole samples */
+		known.duration *= (double)c->shift / c->lag;
 	status = find_duration(&rec, c, look);
 	if (status != SEPARATE_OK)
 		return status;
