@@ -76,7 +76,7 @@ static char *split(const char *text, double *diameter)
 	if (!colon || colon == text)
 		die(EXIT_USAGE, "--balls %s: want FILE:D", text);
 	wrong = unit_parse(colon + 1, UNIT_LENGTH, "", diameter, &end);
-	if (!wrong && *diameter > 0.1)
+	if (!wrong && *diameter > DIAMETER_MOST)
 		wrong = "is more than 0.1 m";
 	if (wrong || !(*diameter > 0))
 		die(EXIT_USAGE, "--balls %s: '%s' %s, want a diameter", text, colon + 1,
