@@ -331,9 +331,11 @@ int main(int argc, char **argv)
 	why = table_doubted(series_table(in));
 	if (why)
 		doubt(&out, why);
-	if (outlook_doubt())
-		doubt(&out, outlook_doubt());
-	doubtful |= why || outlook_doubt();
+	doubtful |= why != NULL;
+	why = outlook_doubt();
+	if (why)
+		doubt(&out, why);
+	doubtful |= why != NULL;
 	units_free(units);
 	pool_free(pool);
 	outlook_close();

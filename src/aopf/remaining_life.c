@@ -199,7 +199,9 @@ static void doubt_of(struct table_in *t)
 
 const char *outlook_doubt(void)
 {
-	return others_doubt;
+	const char *far = isnan(outlook_threshold) ? NULL : covariates_doubt();
+
+	return far ? far : others_doubt;
 }
 
 /* Ages are operating times if the table of the fleet has the column of the clock. */
