@@ -3,7 +3,7 @@
 #	make              build all programs into bin/
 #	make demo         install or name what is missing, build, run the whole pipeline
 #	make check        build and run the tests
-#	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, DATADIR, MANDIR, DOCDIR
+#	make install      PREFIX or prefix, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, DATADIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
 #	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
@@ -16,7 +16,7 @@
 #	make V=1          show every command
 
 VERSION = 0.1.0
-PREFIX ?= /usr/local
+PREFIX ?= $(or $(prefix),/usr/local)
 CC ?= cc
 AR ?= ar
 PKG_CONFIG ?= pkg-config

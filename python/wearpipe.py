@@ -122,7 +122,8 @@ _ContactPar = _struct(("nx", c_int), ("ny", c_int), ("dx", c_double), ("dy", c_d
                       ("estar", c_double), ("hardness", c_double), ("periodic", c_int),
                       ("tolerance", c_double), ("threads", c_int))
 _CONTACT = ("pressure", "load", "approach", "indentation", "area", "energy", "gap")
-_ContactResult = _struct(*[(name, c_double) for name in _CONTACT], ("iterations", c_long))
+_ContactResult = _struct(*[(name, c_double) for name in _CONTACT], ("iterations", c_long),
+                         ("edge_load", c_double))
 _contact_new = _function("wp_contact_new", c_void_p, POINTER(_ContactPar), POINTER(c_int))
 _contact_free = _function("wp_contact_free", None, c_void_p)
 _contact_press = _function("wp_contact_press", c_int, c_void_p, _array, c_double, _array,
@@ -133,7 +134,8 @@ modulus = _function("wp_contact_modulus", c_double, c_double, c_double, c_double
 def press(heights, spacing, pressure, estar, hardness=0.0, periodic=False, tolerance=1e-8,
           threads=1):
     """Presses a rough surface with a mean pressure (Pa).  Returns the pressure [iy, ix] and
-    the result: load, approach, area, energy, gap, converged, ..."""
+    the result: load, approach, area, energy, gap, converged, edge_load, ...  Warns where the
+    outermost cells of a free grid carry most of the load."""
     heights = _field(heights)
     dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
     ny, nx = heights.shape
@@ -143,9 +145,13 @@ def press(heights, spacing, pressure, estar, hardness=0.0, periodic=False, toler
     try:
         p, r = np.zeros((ny, nx)), _ContactResult()
         status = _contact_press(c, heights, pressure, p, None, byref(r))
-        _check(status, (_OK, _NOT_CONVERGED))
-        found = {name: getattr(r, name) for name in _CONTACT + ("iterations",)}
-        return p, SimpleNamespace(converged=status == _OK, **found)
+        _check(status, (_OK, _NOT_CONVERGED, _CUT_OFF))
+        if status == _CUT_OFF:
+            warnings.warn("the outermost cells carry %.0f %% of the load: the edge of the grid "
+                          "cuts off the contact: use a larger grid, or periodic=True" %
+                          (100 * r.edge_load), stacklevel=2)
+        found = {name: getattr(r, name) for name in _CONTACT + ("iterations", "edge_load")}
+        return p, SimpleNamespace(converged=status != _NOT_CONVERGED, **found)
     finally:
         _contact_free(c)
 

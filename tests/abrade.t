@@ -198,6 +198,8 @@ same "it is kept" h.nrrd kept.nrrd
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 { cat four.tsv && echo '# doubtful: pulses differ'; } >self.tsv
 fails "a table that calls itself doubtful" 3 'self.tsv: doubtful by its own account: pulses differ' abrade --gap 9um $p self.tsv
+abrade --gap 9um $p --summary summary self.tsv >out 2>err
+is "its tables repeat why" "$(cat out summary | grep -c '^# doubtful: pulses differ')" 2
 # Particles of a surrogate, and those without end on a periodic grid, have no aspect.
 printf 'diameter\taspect\n10e-6\t3\n10e-6\tnan\n' >endless.tsv
 abrade --gap 9um $p endless.tsv >rows.tsv 2>err

@@ -129,6 +129,7 @@ is "rounding of equal pulses does not change the exponent" "$(value exponent_p) 
 printf '# doubtful: pulses differ\n' | cat single.tsv - >self.tsv
 ballcal --balls self.tsv:100um >cal.tsv 2>err
 is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'own account: pulses differ' err)" "3 1"
+is "its calibration says why" "$(grep '^# doubtful' cal.tsv)" '# doubtful: pulses differ'
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 ln -s 1.tsv same.tsv

@@ -63,6 +63,8 @@ near "a load that is never the one assumed: the width over that without" \
 	"$(cat uncertain plain.3.1 | awk -F '\t' '$1 == 96 { w[++n] = $5 - $3 } END { print w[1] / w[2] }')" 2 1
 is "a warning of a load far from those of the series" "$(cat err)" \
 	"aopf: --covariate load: 9 is far from the values in the series, 5 to 5"
+lives --covariate load:9 path >out 2>err
+is "lives under such a load are doubtful" "$? $(grep -c '^# doubtful: the future value' out)" "3 1"
 is "no warning of a load near those of the series" "$(lives --covariate load:2.9 path 2>&1 >/dev/null)" ""
 # Units of the covariate do not matter, even extreme ones.
 for scale in 1e300 -1e-300; do

@@ -253,6 +253,11 @@ fails "a flow in litres without its unit" 2 'flow 60: want' debriscount --flow 6
 printf 'time1\tdiameter\n1\t60e-6\n# doubtful: pulses differ\n' >self.tsv
 debriscount --duration 10s self.tsv >out 2>err
 is "a table that calls itself doubtful is marked by status 3" "$? $(grep -c 'self.tsv: doubtful by its own account: pulses differ' err)" "3 1"
+for output in classes codes trend; do
+	debriscount --output $output --flow 1L/min --period 1s self.tsv >out 2>err
+	grep '^# doubtful' out
+done >said
+is "its counts repeat why, of either output" "$(sort said | uniq -c | sed 's/^ *//')" "3 # doubtful: pulses differ"
 # half of a section of length T lies within sqrt(3) standard errors, T / sqrt(12), of its middle
 for se in 0.57 0.58; do
 	printf 'time1\ttime1_se\tdiameter\tverdict\tsources\n1\t0\t60e-6\talone\t1\n12\t%s\t60e-6\tunresolved\t40\n' \

@@ -21,6 +21,9 @@ is 'the archive goes without the sources of a library that is missing' \
 is 'flags of the command line join those of the project' "$(commands PKG_CONFIG=false CPPFLAGS=-DMINE CFLAGS=-O0 \
 	"$work/build/lib/num/fft.o" | grep -c -e ' -Iinclude .* -DMINE -std=c11 .* -Wall .* -O0 ')" 1
 
+is 'the prefix may be given in small letters, as other projects have it' \
+	"$(commands prefix=/opt/w uninstall | grep -c '/opt/w/include/wearpipe')$(commands PREFIX=/opt/w uninstall | grep -c '/opt/w/include/wearpipe')" 11
+
 root=$work/'a root'
 if ! make -s -C "$top" install DESTDIR="$root" PREFIX=/usr >out 2>err; then
 	fail 'make install' "$(tail -5 err)"

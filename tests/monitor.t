@@ -296,4 +296,24 @@ print(len(n), sorted(n[0]), n[0]["rul_q50"])' >parsed
 	is "the JSON can be parsed" "$(cat parsed)" \
 		"240 ['p_no_crossing', 'rul_q05', 'rul_q50', 'rul_q95', 't', 'unit', 'y'] None"
 fi
+# Events of a kind between two rows are one, in any order; a repair of one unit is none of another.
+sheet() {
+	printf "$1" >sheet.tsv
+	shift
+	aopf --threshold 1 --direction up --lives-only --events sheet.tsv "$@" 2>err | grep -v '^#'
+}
+sheet 't\tevent\n59.2\trepair\n59.4\tload\n' repaired.tsv >once
+sheet 't\tevent\n59.5\tload\n59.6\trepair\n59.5\tload\n59.6\trepair\n' repaired.tsv >twice
+same "events that are told twice, or in another order, are one of each kind" once twice
+fails "units of events under another name" 1 "sheet.tsv: .*no column 'machine'" \
+	sh -c "printf 't\tevent\tunit\n60\trepair\tu1\n' >sheet.tsv; sed 's/^unit/machine/' three.tsv >machines.tsv
+	aopf --threshold 1 --direction up --lives-only --events sheet.tsv --unit machine machines.tsv"
+fails "days for a series of unknown times" 1 "sheet.tsv: column 't' is in 'd', but the series names no unit" \
+	sh -c "printf '# units: d 1\nt\tevent\n60\trepair\n' >sheet.tsv
+	aopf --threshold 1 --direction up --lives-only --events sheet.tsv repaired.tsv"
+printf 't\tevent\n60\trepair\n# doubtful: guessed\n' >sheet.tsv
+aopf --threshold 1 --direction up --lives-only --events sheet.tsv repaired.tsv >out 2>err
+is "lives from doubtful events are doubtful" "$? $(grep '^# doubtful' out)" "3 # doubtful: guessed"
+aopf --threshold 1 --direction up --lives-only --events never.tsv repaired.tsv >out 2>err
+is "a table whose lives are doubtful says so" "$? $(grep -c '^# doubtful' out)" "3 1"
 done_testing

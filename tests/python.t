@@ -61,6 +61,14 @@ for name, row in ("inside", 14), ("border", 29):
         wearpipe.wear(np.zeros((32, 32)), square, dx, 355e6)
         np.stack([np.zeros((32, 32)), square], 2).tofile(name + ".raw")
         print(name, *[str(w.message) for w in said])
+# a ridge in the middle of a free grid, and one on its edge
+for name, row in ("middle", 15), ("edge", 0):
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        ridge = np.zeros((32, 32)); ridge[row, 10:20] = 1e-6
+        _, r = wearpipe.press(ridge, dx, 1e5, 115e9)
+        ridge.tofile(name + ".raw")
+        print("ridge", name, "%.6g" % r.edge_load, r.converged, *[str(w.message)[:29] for w in said])
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     noise = wearpipe.separate(np.random.default_rng(1).normal(size=(8192, 2)), 10e3)
@@ -103,6 +111,15 @@ for name in inside border; do
 done
 is 'a square inside ends without a warning and one at the border with one, as in debrisgen' \
 	"$(grep -c '^inside$' got) $(grep -c '^border particles are cut off' got) $(tr '\n' ' ' <ends)" '1 1 inside 0 border 3 '
+for name in middle edge; do
+	records --output nrrd --raw 32x32 --pixel 31.25um --fields "height m" $name.raw |
+		bemcontact --pressure 100kPa --estar 115GPa --tolerance 1e-8 --table table >/dev/null 2>err
+	echo "$name $? $(column edge_load table | awk '{ printf "%.6g", $1 }')" >>edges
+done
+is 'the load on the outermost cells is that of bemcontact' \
+	"$(got ridge | cut -d' ' -f1-2 | tr '\n' ' ')" "$(cut -d' ' -f1,3 edges | tr '\n' ' ')"
+is 'a ridge inside ends without a warning and one on the edge with one, as in bemcontact' \
+	"$(got ridge | cut -d' ' -f3-5 | tr '\n' ' ')$(cut -d' ' -f2 edges | tr '\n' ' ')" 'True True the outermost 0 3 '
 is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
 is 'the particles in a record are those of duet to the last bit' "$(got separation)" 'True True True'
 is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['channels with nothing in common: no pa']"

@@ -283,4 +283,12 @@ fails "a particle after the end of days" 1 'line 2: time 1e+300 s, want times in
 	sensorsim never.tsv
 sensorsim --uniform 50um:60um --number 1 --duration 60s --spacing 250 2>sent | duet --spacing 250 >out 2>err
 is "a spacing in millimetres without its unit is doubted" "$(cat sent err | grep -c 'is 250mm meant')" 2
+# what comes after a doubtful table in the pipe takes its record as doubtful, too
+awk 'BEGIN { print "diameter"; for (i = 0; i < 40; i++) print "1e-4"; print "# doubtful: pulses differ" }' >self.tsv
+sensorsim --duration 20s self.tsv >self.au 2>err
+sigconvert --output text self.au | sigconvert --from text | duet --method count --floor 1uV >self.out 2>err
+is "particles from the record of a doubtful table are doubtful" \
+	"$? $(grep '^# doubtful' self.out) $(grep -c 'own account: pulses differ' err)" "3 # doubtful: pulses differ 1"
+is "a filtered record says so, too" \
+	"$(bpfilter --band 70:130 self.au | head -c 400 | tr '\000' '\n' | grep -a -c '^doubtful pulses differ')" 1
 done_testing

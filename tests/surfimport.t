@@ -296,6 +296,13 @@ is "integers of eight bytes are read" "$(heights b.nrrd)" "5e-06 -3e-06"
 awk 'BEGIN { for (i = 0; i < 9; i++) print i * 0.5, i % 3 }' >places.txt
 fails "positions and heights for a matrix" 1 'positions and heights, are not a matrix: --profile' \
 	surfimport --pixel 1um --height-unit 1um places.txt
+for last in 4 8; do
+	sed -n "2,${last}p" places.txt >few.txt
+	fails "$((last - 1)) positions and heights for a matrix" 1 'positions and heights, are not a matrix: --profile' \
+		surfimport --pixel 1um --height-unit 1um few.txt
+done
+printf '0.1 1.3\n0.7 1.1\n0.9 1.2\n' >two.txt
+ok "a matrix of two columns has no positions" surfimport --pixel 1um --height-unit 1um two.txt
 awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) print i, j, i * j }' >points.txt
 fails "points for a matrix" 1 'three columns look like points x, y, z' surfimport --pixel 1um --height-unit 1um points.txt
 awk 'BEGIN { for (i = -1; i < 4; i++) for (j = -1; j < 4; j++)

@@ -80,7 +80,7 @@ for t in abc nan inf 1e12 -1; do
 	printf 'time1\tdiameter\n0.5\t1e-4\n%s\t1e-4\n' "$t" >odd.tsv
 	fails "a time of $t is refused" 1 'odd.tsv: line 3: time1' timeout 10 wear-volume odd.tsv
 done
-for d in -1 inf 2 abc; do
+for d in -1 0 inf 0.11 abc; do
 	printf 'time1\tdiameter\n0.5\t1e-4\n1\t%s\n' "$d" >odd.tsv
 	fails "a diameter of $d is refused" 1 'odd.tsv: line 3: diameter' wear-volume odd.tsv
 done

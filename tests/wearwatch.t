@@ -161,4 +161,16 @@ fails 'alarms of a life that ascend' 2 'must be descending' \
 fails 'classes that descend' 2 'is not above' wearwatch --state other --classes 100um,50um hours.au
 fails 'an option that duet has not' 2 'no such option' wearwatch --state other --duet '--colour 3' hours.au
 fails 'an unknown option' 2 'no such option' wearwatch --colour
+# Nothing wears for a while, and the record ends within the overlap behind its last whole chunk.
+awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 241; i++) if (i < 85 || i > 225) print 0.05 + i / 10 "\t8e-5" }' >rest.tsv
+sensorsim --duration 24.09s --noise 10mV rest.tsv >rest.au 2>err
+watch --state rest rest.au 2>said
+is 'a rest of the wear makes the life doubtful and the watch goes on' \
+	"$? $(column chunk rest/chunks.tsv | wc -l | tr -d ' ') $(column doubts rest/chunks.tsv | grep -c life | awk '{ print ($1 > 0) }')" '3 25 1'
+is 'the end of a record counts that is shorter than the overlap' \
+	"$(column end rest/chunks.tsv | tail -n 1) $(column particles rest/chunks.tsv | tail -n 1)" "86724 1"
+watch --state piped <rest.au 2>said
+same 'a stream has the same end' piped/chunks.tsv rest/chunks.tsv
+watch --state rest rest.au 2>said
+same 'the end is done again in the same way' piped/chunks.tsv rest/chunks.tsv
 done_testing

@@ -48,6 +48,7 @@ struct wp_contact_result {
 	double energy;      /* elastic, J */
 	double gap; /* relative duality gap of the result: bounds the excess energy */
 	long iterations;
+	double edge_load; /* share of the load on the outermost cells of a free grid */
 };
 
 WP_API struct wp_contact *wp_contact_new(
@@ -56,7 +57,7 @@ WP_API void wp_contact_free(struct wp_contact *c);
 
 /* Solves the contact for a mean pressure (Pa). p (nx * ny): on entry an initial guess of
  * any scale, or zeros; on return the pressure.  gap (nx * ny, m) and result may be NULL.
- */
+ * WP_CUT_OFF if the outermost cells of a free grid carry most of the load. */
 WP_API enum wp_status wp_contact_press(struct wp_contact *c, const double *height,
 	double pressure, double *p, double *gap, struct wp_contact_result *result);
 

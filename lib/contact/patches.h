@@ -38,6 +38,10 @@ enum num_status contact_patches(const struct patch_grid *grid, const double *pre
 double contact_corrected_area(
 	const struct patch_grid *grid, double area, double perimeter);
 
+/* From this share of the load on the outermost cells on, the contact is mostly with what
+ * the grid has cut off. */
+#define CONTACT_EDGE_MOST 0.5
+
 /* Share of the load on the outermost cells; 0 on a periodic grid, which has no edge. */
 double contact_edge_load(const struct patch_grid *grid, const double *pressure);
 

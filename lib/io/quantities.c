@@ -84,10 +84,9 @@ double table_ratio(const struct table_in *t, int column, const char *to)
 
 double table_diameter(const struct table_in *t, int column)
 {
-	static const double most = 0.1;
 	double d = table_positive(t, column);
 
-	if (d > most)
+	if (d > DIAMETER_MOST)
 		die(EXIT_RUN,
 			"%s: line %ld: diameter is %g m, want metres or a '# units:' "
 			"line above the header that names the unit",

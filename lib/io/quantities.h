@@ -27,9 +27,12 @@ double table_ratio(const struct table_in *t, int column, const char *unit);
 int table_need_quantity(struct table_in *t, const char *column, enum unit unit);
 int table_find_quantity(struct table_in *t, const char *column, enum unit unit);
 
+/* Largest diameter of a particle, m: the bores of debris sensors are millimetres to a
+ * few centimetres wide, and a larger particle is one in another unit. */
+#define DIAMETER_MOST 0.1
+
 /* Diameter of a particle in the present row, in SI.  Dies where it is not above 0, or
- * beyond 0.1 m: the bores of debris sensors are millimetres to a few centimetres wide,
- * and a larger particle is one in another unit. */
+ * beyond DIAMETER_MOST. */
 double table_diameter(const struct table_in *t, int column);
 
 #endif

@@ -202,6 +202,7 @@ static void read_header(struct signal_in *in)
 	in->format.seed = annotated(text, "seed");
 	in->format.filter = annotated(text, "filter");
 	in->format.start = annotated(text, "start");
+	in->format.doubt = annotated(text, "doubtful");
 	if (own)
 		take_rate(in, text);
 	free(text);
@@ -417,6 +418,15 @@ size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 	return n;
 }
 
+const char *signal_doubted(const struct signal_in *in)
+{
+	const char *why = in->format.doubt;
+
+	if (why)
+		warn("%s: doubtful by its own account: %s", in->name, why);
+	return why;
+}
+
 void signal_close(struct signal_in *in)
 {
 	if (in->done)
@@ -427,6 +437,7 @@ void signal_close(struct signal_in *in)
 	free(in->format.seed);
 	free(in->format.filter);
 	free(in->format.start);
+	free(in->format.doubt);
 	free(in);
 }
 
@@ -440,7 +451,7 @@ static char *annotation(const struct signal_format *format)
 	const char *line[][2] = { { "stream", ENDS_PROMISE }, { "cmd", format->cmd },
 		{ "units", format->units }, { "seed", format->seed },
 		{ "filter", format->filter }, { "rate", fraction },
-		{ "start", format->start } };
+		{ "start", format->start }, { "doubtful", format->doubt } };
 	char *text = xprintf("%s", "");
 
 	for (size_t i = 0; i < sizeof line / sizeof *line; i++)

@@ -20,6 +20,7 @@ struct signal_format {
 	char *filter; /* linear-phase filters applied, as printed by fir_print(),
 			 separated by " | "; NULL if none */
 	char *start;  /* moment of the first frame, ISO 8601; NULL if unknown */
+	char *doubt;  /* why what it shows is doubtful; NULL if it is not */
 };
 
 struct signal_raw {
@@ -43,6 +44,8 @@ const char *signal_name(const struct signal_in *in);
 size_t signal_read(struct signal_in *in, double *x, size_t nframes);
 /* The same, but returns as soon as at least one frame is available. */
 size_t signal_read_some(struct signal_in *in, double *x, size_t nframes);
+/* Why it is doubtful, with a warning; NULL if it is not. */
+const char *signal_doubted(const struct signal_in *in);
 void signal_close(struct signal_in *in);
 
 /* path NULL is standard output, which must not be a terminal. */

@@ -1,4 +1,5 @@
 #include "contact/kernel.h"
+#include "contact/patches.h"
 #include "contact/solver.h"
 #include "num/pool.h"
 #include "report.h"
@@ -11,6 +12,7 @@ enum { MAX_ITERATIONS = 10000 };
 struct wp_contact {
 	struct pool *pool;
 	struct contact *contact;
+	struct patch_grid grid;
 };
 
 struct wp_contact *wp_contact_new(
@@ -33,6 +35,8 @@ struct wp_contact *wp_contact_new(
 	c = calloc(1, sizeof *c);
 	if (!c)
 		return report(status, WP_NO_MEMORY);
+	c->grid = (struct patch_grid){ par->nx, par->ny, par->dx, par->dy,
+		wanted.boundary == CONTACT_PERIODIC };
 	c->pool = wanted.pool = pool_new(par->threads);
 	c->contact = c->pool ? contact_new(&wanted) : NULL;
 	if (!c->contact) {
@@ -60,6 +64,7 @@ static enum wp_status solve(struct wp_contact *c, const double *height,
 	enum contact_status status =
 		contact_solve(c->contact, height, control, target, p, gap);
 	const struct contact_result *found = contact_result(c->contact);
+	double edge_load;
 
 	switch (status) {
 	case CONTACT_OVERLOAD:
@@ -71,11 +76,14 @@ static enum wp_status solve(struct wp_contact *c, const double *height,
 	case CONTACT_NOCONV:
 		break;
 	}
+	edge_load = contact_edge_load(&c->grid, p);
 	if (result)
 		*result = (struct wp_contact_result){ found->pressure, found->load,
 			found->approach, found->indentation, found->area, found->energy,
-			found->optimality_gap, found->iterations };
-	return status == CONTACT_OK ? WP_OK : WP_NOT_CONVERGED;
+			found->optimality_gap, found->iterations, edge_load };
+	if (status != CONTACT_OK)
+		return WP_NOT_CONVERGED;
+	return edge_load > CONTACT_EDGE_MOST ? WP_CUT_OFF : WP_OK;
 }
 
 enum wp_status wp_contact_press(struct wp_contact *c, const double *height,

@@ -76,6 +76,16 @@ static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
 static int doubtful, stepped;
 static double rolling, yielding, buried; /* particles */
 
+/* Both tables say it too, since the exit status is lost in a pipe. */
+static void doubt(const char *why)
+{
+	doubtful = 1;
+	if (table)
+		table_comment(table, "doubtful", "%s", why);
+	if (summary)
+		table_comment(summary, "doubtful", "%s", why);
+}
+
 static struct abrasion_par parameters(void)
 {
 	return (struct abrasion_par){ .gap = gap,
@@ -140,7 +150,7 @@ static double find_gap(const struct abrasion_par *par, const struct particles_in
 	if (fabs(error) > 1e-6) {
 		warn("realisation %ld: at a gap of %.6g m the load jumps over %g N to %g N",
 			in->realisation, found, load, carried);
-		doubtful = 1;
+		doubt("at some gaps the load jumps over the wanted one");
 	}
 	return found;
 }
@@ -170,7 +180,7 @@ static void find_mean(struct abrasion_par par)
 		return;
 	warn("%.3g particles per m2 of the oil yield or are buried: the mean wear does not include theirs",
 		mean.undescribed);
-	doubtful = 1;
+	doubt("the mean wear does not include particles that yield or are buried");
 }
 
 struct totals {
@@ -315,7 +325,7 @@ int main(int argc, char **argv)
 		run_gap(&in);
 	if (!isnan(load) && gaps == 0) {
 		warn("no particle carries the load of %g N: the surfaces touch", load);
-		doubtful = 1;
+		doubt("no particle carries the load");
 	}
 	if (surface_path) {
 		size_t again,
@@ -325,12 +335,12 @@ int main(int argc, char **argv)
 		if (again > 0) {
 			warn("%s: %zu records are of the realisation%s of an earlier one: all its grooves are cut into each of them",
 				surface_path, again, stepped ? " and step" : "");
-			doubtful = 1;
+			doubt("the grooves of some particles are cut more than once");
 		}
 		if (left > 0) {
 			warn("%zu grooves are left out: %s has no record of their realisation%s",
 				left, surface_path, stepped ? " and step" : "");
-			doubtful = 1;
+			doubt("grooves without a surface are left out");
 		}
 	}
 	if (motion == ABRASION_BY_SHAPE && !particles_shaped(source) &&
@@ -340,10 +350,13 @@ int main(int argc, char **argv)
 	if (yielding + buried > 0) {
 		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			yielding, buried);
-		doubtful = 1;
+		doubt("the volumes do not include particles that yield or are buried");
 	}
 	verdict_report();
-	doubtful |= verdict_equivalent() | particles_doubted(source);
+	if (verdict_equivalent())
+		doubt("the diameters of particles that are not ferrous");
+	if (particles_doubted(source))
+		doubt(particles_doubted(source));
 	particles_close(source);
 	if (table)
 		table_done(table);

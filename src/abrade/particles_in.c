@@ -20,7 +20,7 @@ struct opt particles_rows[] = {
 	OPT_HEADING("Particles"),
 	{ 0, "iso", OPT_LIST, UNIT_COUNT, &iso, 0, ISO4406_CODES - 1, "C:C:C",
 		"draw the particles of an oil of this ISO 4406 code, 18:16:13", NULL, 0 },
-	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, 1, "D",
+	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, DIAMETER_MOST, "D",
 		"of --iso: largest particle", NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1000000000, "N",
 		"of --iso: number of realisations", NULL, 0 },
@@ -36,8 +36,8 @@ struct row {
 struct source {
 	struct row *row;
 	size_t rows, room, at;
-	int apart, shaped, stepped, doubted;
-	char *upstream;
+	int apart, shaped, stepped;
+	char *upstream, *doubt;
 	double *diameter, *aspect; /* of the present gap */
 	/* drawn */
 	const struct population *population;
@@ -118,6 +118,7 @@ struct source *particles_read(const char *path)
 {
 	struct source *s = xcalloc(1, sizeof *s);
 	struct table_in *t = table_open(path);
+	const char *why;
 	int more = table_next(t), shaped = 1, cd, ca, cr, cs, cv;
 
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
@@ -156,7 +157,9 @@ struct source *particles_read(const char *path)
 	qsort(s->row, s->rows, sizeof *s->row, in_order);
 	if (cr >= 0)
 		check_parts(s, table_name(t));
-	s->doubted = table_doubted(t) != NULL;
+	why = table_doubted(t);
+	if (why)
+		s->doubt = xstrdup(why);
 	table_close(t);
 	s->diameter = xcalloc(s->rows + 1, sizeof *s->diameter);
 	s->aspect = xcalloc(s->rows + 1, sizeof *s->aspect);
@@ -230,9 +233,9 @@ int particles_stepped(const struct source *s)
 	return s->stepped;
 }
 
-int particles_doubted(const struct source *s)
+const char *particles_doubted(const struct source *s)
 {
-	return s->doubted;
+	return s->doubt;
 }
 
 const char *particles_upstream(const struct source *s)
@@ -244,6 +247,7 @@ void particles_close(struct source *s)
 {
 	free(s->row);
 	free(s->upstream);
+	free(s->doubt);
 	free(s->diameter);
 	free(s->aspect);
 	free(s);

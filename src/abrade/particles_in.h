@@ -37,8 +37,8 @@ int particles_shaped(const struct source *s);
 int particles_apart(const struct source *s);
 /* 1 if the table has a column of steps. */
 int particles_stepped(const struct source *s);
-/* 1 if the table says that its rows are doubtful. */
-int particles_doubted(const struct source *s);
+/* Why the table says that its rows are doubtful, NULL if it does not. */
+const char *particles_doubted(const struct source *s);
 const char *particles_upstream(const struct source *s); /* NULL if unknown */
 void particles_close(struct source *s);
 

@@ -171,6 +171,13 @@ static void close_sink(struct sink *out)
 	free(out->name);
 }
 
+/* The table says it too, since the exit status is lost in a pipe. */
+static void doubt(const struct sink *out, const char *why)
+{
+	if (out->table)
+		table_comment(out->table, "doubtful", "%s", why);
+}
+
 /* --- rows in ------------------------------------------------------------------------ */
 
 /* Rows of several units; those of one unit follow each other by next. */
@@ -252,8 +259,8 @@ static void read_rows(
 	long before = 0;
 
 	if (clock >= 0)
-		table_set_scale(series_table(in), clock,
-			table_ratio(series_table(in), clock, timeunit_word()));
+		table_set_scale(
+			series_table(in), clock, timeunit_ratio(series_table(in), clock));
 	b.item = xcalloc(room, sizeof *b.item);
 	b.cell = xcalloc(room, (size_t)(b.cells ? b.cells : 1) * sizeof *b.cell);
 	b.first = xcalloc(room, sizeof *b.first);
@@ -319,15 +326,20 @@ int main(int argc, char **argv)
 	read_rows(in, units, pool, &out);
 	alarm = units_alarm(units);
 	doubtful = units_report(units);
+	if (doubtful)
+		doubt(&out, "lives or events, as a warning says");
 	why = table_doubted(series_table(in));
-	if (why && out.table)
-		table_comment(out.table, "doubtful", "%s", why);
+	if (why)
+		doubt(&out, why);
+	doubtful |= why != NULL;
+	why = outlook_doubt();
+	if (why)
+		doubt(&out, why);
+	doubtful |= why != NULL;
 	units_free(units);
 	pool_free(pool);
 	outlook_close();
 	close_sink(&out);
 	series_close(in);
-	return shell_done(alarm > 0         ? EXIT_ALARM
-			  : doubtful || why ? EXIT_NOCONV
-					    : EXIT_SUCCESS);
+	return shell_done(alarm > 0 ? EXIT_ALARM : doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

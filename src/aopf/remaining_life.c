@@ -182,6 +182,28 @@ void outlook_check(int bare)
 			opt_any_given(filtering_rows));
 }
 
+/* Why the table of the fleet or of events is doubtful, by its own account. */
+static char *others_doubt;
+
+static void doubt_of(struct table_in *t)
+{
+	const char *why = table_doubted(t);
+
+	if (!why)
+		return;
+	if (others_doubt)
+		others_doubt = xappend(others_doubt, "; %s", why);
+	else
+		others_doubt = xstrdup(why);
+}
+
+const char *outlook_doubt(void)
+{
+	const char *far = isnan(outlook_threshold) ? NULL : covariates_doubt();
+
+	return far ? far : others_doubt;
+}
+
 /* Ages are operating times if the table of the fleet has the column of the clock. */
 static void read_fleet(
 	const struct series *like, const char *unit_column, const char *clock_column)
@@ -194,10 +216,10 @@ static void read_fleet(
 	char y[UNIT_WORD];
 
 	table_unit_word(series_table(like), series_value_column(like), y);
-	series_scale(in, table_ratio(table, series_time_column(in), timeunit_word()),
+	series_scale(in, timeunit_ratio(table, series_time_column(in)),
 		table_ratio(table, series_value_column(in), y));
 	if (clock >= 0)
-		table_set_scale(table, clock, table_ratio(table, clock, timeunit_word()));
+		table_set_scale(table, clock, timeunit_ratio(table, clock));
 	fleet = fleet_new(outlook_threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in)) {
@@ -225,6 +247,7 @@ static void read_fleet(
 	if (n > BANK_PATHS_MAX)
 		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d",
 			fleet_file, BANK_PATHS_MAX, n);
+	doubt_of(table);
 	stats_set("fleet_units", failed);
 	stats_set("fleet_units_carried_on", carried_on);
 	stats_set("fleet_units_left_out", series_units(in) - n);
@@ -250,7 +273,10 @@ static void read_events(const char *unit_column)
 	int t = table_need(in, "t"), what = table_need(in, "event"),
 	    unit = table_find(in, unit_column);
 
-	table_set_scale(in, t, table_ratio(in, t, timeunit_word()));
+	/* Events of one unit must not count for all. */
+	if (unit < 0 && table_find(in, "unit") >= 0)
+		table_need(in, unit_column);
+	table_set_scale(in, t, timeunit_ratio(in, t));
 	while (table_next(in)) {
 		struct event *e;
 		const char *word = table_text(in, what);
@@ -269,6 +295,7 @@ static void read_events(const char *unit_column)
 			die(EXIT_RUN, "%s: line %ld: time is missing or not finite",
 				table_name(in), table_line(in));
 	}
+	doubt_of(in);
 	table_close(in);
 }
 
@@ -303,6 +330,7 @@ void outlook_close(void)
 	for (int i = 0; i < n_events; i++)
 		free(events[i].unit);
 	free(events);
+	free(others_doubt);
 	for (int i = 0; i < n_fleet_units; i++)
 		free(fleet_unit[i]);
 	free(fleet_unit);
@@ -376,20 +404,25 @@ static int concerns(const struct event *e, const char *unit)
 	return !e->unit || strcmp(e->unit, unit) == 0;
 }
 
-/* Events since the last row in which the clock advanced. */
+/* Events since the last row in which the clock advanced.  Those of a kind are one, as the
+ * rows know nothing of what was between them. */
 static void heed_events(struct outlook *o, const struct outlook_row *in)
 {
+	double last[] = { [BANK_REPAIR] = -INFINITY, [BANK_LOAD] = -INFINITY };
+
 	for (int i = 0; i < n_events; i++) {
 		const struct event *e = &events[i];
 
 		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, o->unit))
 			continue;
-		if (!bank_event(o->bank, e->what))
-			o->now.early = fmax(o->now.early, e->t);
+		last[e->what] = fmax(last[e->what], e->t);
 		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
 		o->now.course = (struct plateau){ 0 };
 		o->now.events++;
 	}
+	for (enum bank_event e = BANK_REPAIR; e <= BANK_LOAD; e++)
+		if (last[e] > -INFINITY && !bank_event(o->bank, e))
+			o->now.early = fmax(o->now.early, last[e]);
 	o->now.heeded = in->t;
 }
 

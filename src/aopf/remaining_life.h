@@ -33,6 +33,9 @@ void outlook_check(int bare);
  * any, into its units; the first column identifies units, or "unit" if it is NULL, and
  * the second holds the operating time, unless it is NULL. */
 void outlook_open(struct series *in, const char *unit_column, const char *clock_column);
+/* At the end: why the fleet, the events or the future of a covariate make lives doubtful;
+ * NULL: they do not. */
+const char *outlook_doubt(void);
 void outlook_close(void);
 uint64_t outlook_fleet(void); /* checksum of the paths of the fleet */
 

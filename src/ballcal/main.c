@@ -60,7 +60,7 @@ struct pulses {
 	double speed;     /* sum of velocities */
 	int signs[2];     /* tables of positive and of negative amplitudes */
 	int equal;        /* tables of pulses that do not differ */
-	int doubted;      /* a table is, by its own account */
+	char *doubt;      /* of a table, by its own account; NULL: of none */
 	double outlier_p; /* the least of the tables; nan: none has three pulses */
 	/* Squared standard errors of the amplitudes of pulses that stand alone, whose
 	 * fit is the matched filter: their sum and number. */
@@ -76,7 +76,7 @@ static char *split(const char *text, double *diameter)
 	if (!colon || colon == text)
 		die(EXIT_USAGE, "--balls %s: want FILE:D", text);
 	wrong = unit_parse(colon + 1, UNIT_LENGTH, "", diameter, &end);
-	if (!wrong && *diameter > 0.1)
+	if (!wrong && *diameter > DIAMETER_MOST)
 		wrong = "is more than 0.1 m";
 	if (wrong || !(*diameter > 0))
 		die(EXIT_USAGE, "--balls %s: '%s' %s, want a diameter", text, colon + 1,
@@ -153,6 +153,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
 	char *path = split(text, &diameter);
+	const char *why;
 	struct table_in *t;
 	int more, ca, cv, cw, ce = -1;
 	size_t before = p->n;
@@ -190,7 +191,11 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	p->signs[sign < 0]++;
 	compare(p, before, table_name(t));
-	p->doubted |= table_doubted(t) != NULL;
+	why = table_doubted(t);
+	if (why && p->doubt)
+		p->doubt = xappend(p->doubt, "; %s", why);
+	else if (why)
+		p->doubt = xstrdup(why);
 	table_close(t);
 	free(path);
 }
@@ -325,7 +330,7 @@ int main(int argc, char **argv)
 	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
 	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY ||
-		   p.outlier_p < UNLIKELY || p.equal || p.doubted ||
+		   p.outlier_p < UNLIKELY || p.equal || p.doubt ||
 		   (p.signs[0] && p.signs[1]);
 	if (p.signs[0] && p.signs[1])
 		warn("amplitudes are positive in %d tables and negative in %d: balls of several "
@@ -344,6 +349,10 @@ int main(int argc, char **argv)
 	snprintf(unit, sizeof unit, "V.s/m^%g", exponent + 1);
 	t = table_create(NULL, opt_cmd(NULL, NULL), "1 unit unit unit 1",
 		"quantity value low high unit");
+	/* The exit status is lost in a pipe. */
+	if (doubtful)
+		table_comment(t, "doubtful", "%s",
+			p.doubt ? p.doubt : "the balls, as a warning says");
 	put(t, "pulses", "1", (double)p.n, NAN, NAN);
 	put(t, "sizes", "1", sizes, NAN, NAN);
 	put_log(t, "calibration", unit, ln_k, doubt.constant);
@@ -366,5 +375,6 @@ int main(int argc, char **argv)
 	free(x);
 	free(y);
 	free(p.pulse);
+	free(p.doubt);
 	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -92,15 +92,25 @@ void covariates_read(struct table_in *t, double load[BANK_LOADS])
 	}
 }
 
+const char *covariates_doubt(void)
+{
+	const char *why = NULL;
+
+	for (int k = 0; k < covariates.n; k++) {
+		if (future[k].future != BANK_VALUE || !(least[k] <= most[k]) ||
+			!(fabs(2 * future[k].value - least[k] - most[k]) >
+				3 * (most[k] - least[k])))
+			continue;
+		why = "the future value of a covariate is far from those of the series";
+		warn("--covariate %s: %g is far from the values in the series, %g "
+		     "to %g",
+			name[k], future[k].value, least[k], most[k]);
+	}
+	return why;
+}
+
 void covariates_close(void)
 {
-	for (int k = 0; k < covariates.n; k++) {
-		if (future[k].future == BANK_VALUE && least[k] <= most[k] &&
-			fabs(2 * future[k].value - least[k] - most[k]) >
-				3 * (most[k] - least[k]))
-			warn("--covariate %s: %g is far from the values in the series, %g "
-			     "to %g",
-				name[k], future[k].value, least[k], most[k]);
+	for (int k = 0; k < covariates.n; k++)
 		free(name[k]);
-	}
 }

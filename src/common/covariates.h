@@ -24,7 +24,9 @@ const struct bank_covariate *covariates_future(void);
 void covariates_open(struct table_in *t);
 /* The covariates of the present row; dies where one is not finite. */
 void covariates_read(struct table_in *t, double load[BANK_LOADS]);
-/* Warns of future values far from those of the table. */
+/* At the end: warns of future values far from those of the table, and says why lives are
+ * doubtful then; NULL: they are not. */
+const char *covariates_doubt(void);
 void covariates_close(void);
 
 #endif

@@ -1,12 +1,11 @@
 #include "common/edge.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "contact/patches.h"
 
 /* Share of the load on the outermost cells that is worth a warning: what they carry in
  * full contact of 80 x 80 cells. */
 static const double EDGE_LOAD = 0.05;
-/* From half of the load on, the contact is mostly with what the grid has cut off. */
-static const double EDGE_MOST = 0.5;
 
 void edge_note(struct edge *e, double share, double limit, long realisation, long step)
 {
@@ -21,7 +20,7 @@ void edge_note(struct edge *e, double share, double limit, long realisation, lon
 int edge_load_note(struct edge *e, double share, long realisation, long step)
 {
 	edge_note(e, share, EDGE_LOAD, realisation, step);
-	return share > EDGE_MOST;
+	return share > CONTACT_EDGE_MOST;
 }
 
 void edge_load_warn(const struct edge *e, const char *name)

@@ -42,6 +42,19 @@ double timeunit(void)
 	return isnan(told) ? seconds[unit] : told;
 }
 
+double timeunit_ratio(const struct table_in *t, int column)
+{
+	char word[UNIT_WORD];
+
+	if (column >= 0 && strcmp(table_unit_word(t, column, word), "1") != 0 &&
+		strcmp(timeunit_word(), "1") == 0)
+		die(EXIT_RUN,
+			"%s: column '%s' is in '%s', but the series names no unit of its "
+			"times: specify --time-unit",
+			table_name(t), table_column_name(t, column), word);
+	return table_ratio(t, column, timeunit_word());
+}
+
 const char *timeunit_word(void)
 {
 	return strcmp(told_word, "1") != 0 ? told_word

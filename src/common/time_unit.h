@@ -14,5 +14,8 @@ void timeunit_settle(const struct table_in *t, int column, int needed);
 /* The unit in seconds; 1 if neither table nor option states it. */
 double timeunit(void);
 const char *timeunit_word(void); /* "1" then */
+/* Factor that converts the times of a column of another table, or of another column, to
+ * that unit.  Dies where they name a unit but the times read do not. */
+double timeunit_ratio(const struct table_in *t, int column);
 
 #endif

@@ -154,8 +154,9 @@ void groups_finish(struct groups *g, double last)
 	stats_set("periods_left_out", 1);
 }
 
-void groups_doubtful(struct groups *g)
+void groups_doubtful(struct groups *g, const char *why)
 {
+	report_doubt(g->report, why);
 	g->doubtful = 1;
 }
 

@@ -19,7 +19,8 @@ double groups_next(const struct groups *g);
 /* The periods that are left, up to the end of the record, which is duration, the last
  * whole period, or the last particle. */
 void groups_finish(struct groups *g, double last);
-void groups_doubtful(struct groups *g);
+/* The table says it too, since the exit status is lost in a pipe. */
+void groups_doubtful(struct groups *g, const char *why);
 int groups_status(const struct groups *g); /* 0, or 3 where something was doubtful */
 int groups_alarm(const struct groups *g);  /* 1 if an alarm is active */
 void groups_free(struct groups *g);

@@ -253,13 +253,13 @@ static double count_rows(
 		warn("%.0f particles arrived after the end of their period and are counted in a later one",
 			late);
 		stats_set("particles_late", late);
-		groups_doubtful(groups);
+		groups_doubtful(groups, "particles are counted after their period");
 	}
 	if (across > 0) {
 		warn("%.0f sections that are not resolved reach beyond their period and are "
 		     "counted in that of their middle: choose a longer --period",
 			across);
-		groups_doubtful(groups);
+		groups_doubtful(groups, "unresolved sections reach beyond their period");
 	}
 	if (records > 1 && !isnan(duration))
 		warn("%ld records are counted as one: --duration %g s is taken for all together",
@@ -269,7 +269,8 @@ static double count_rows(
 		     "of cases: each counts as more than a hundred, or is none, or --d50 is "
 		     "wrong",
 			hardly);
-		groups_doubtful(groups);
+		groups_doubtful(
+			groups, "particles of a size that the sensor hardly detects");
 	}
 	return last;
 }
@@ -280,6 +281,7 @@ int main(int argc, char **argv)
 	struct report_par par;
 	struct groups *groups;
 	struct table_in *t;
+	const char *why;
 	double last = 0;
 
 	check_options();
@@ -309,9 +311,11 @@ int main(int argc, char **argv)
 	if (!non_ferrous_known() &&
 		(edges.n || standard || output == REPORT_CODES || !isnan(density)) &&
 		verdict_equivalent())
-		groups_doubtful(groups);
-	if (table_doubted(t))
-		groups_doubtful(groups);
+		groups_doubtful(
+			groups, "the diameters of particles that are not ferrous");
+	why = table_doubted(t);
+	if (why)
+		groups_doubtful(groups, why);
 	table_close(t);
 	status = groups_alarm(groups) ? EXIT_ALARM : groups_status(groups);
 	groups_free(groups);

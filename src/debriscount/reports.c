@@ -293,6 +293,11 @@ void report_period(struct report *r, struct rate_history *h, const char *group,
 		put_trend(r, h, group, begin, end, possible);
 }
 
+void report_doubt(struct report *r, const char *why)
+{
+	table_comment(r->table, "doubtful", "%s", why);
+}
+
 void report_flush(struct report *r)
 {
 	table_flush(r->table);

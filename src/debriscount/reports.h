@@ -54,6 +54,7 @@ struct report *report_open(const struct report_par *par);
 /* Rows of one period of a group. */
 void report_period(struct report *r, struct rate_history *h, const char *group,
 	const struct classes *c, double begin, double end, int whole);
+void report_doubt(struct report *r, const char *why);
 void report_flush(struct report *r);
 void report_close(struct report *r);
 void rate_history_free(struct rate_history *h);

@@ -169,6 +169,16 @@ static void count_all(struct signal_in *in, struct found *out)
 	count_record(in, out, &par);
 }
 
+/* The table says it too, since the exit status is lost in a pipe. */
+static int is_doubted(const struct signal_in *in, struct found *out)
+{
+	const char *why = signal_doubted(in);
+
+	if (why)
+		table_comment(out->particles, "doubtful", "%s", why);
+	return why != NULL;
+}
+
 int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
@@ -203,6 +213,7 @@ int main(int argc, char **argv)
 				sources.word < 0 ? (int)sources.value : 0);
 	else
 		doubtful = separate_all(in, &out);
+	doubtful |= is_doubted(in, &out);
 	found_close(&out);
 	signal_close(in);
 	free(cmd);

@@ -32,7 +32,7 @@ static struct table_out *side_table(const char *path, const struct signal_format
 void found_open(struct found *out, const struct signal_format *format, const char *cmd)
 {
 	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, NULL, NULL, NULL,
-		NULL, format->start };
+		NULL, format->start, format->doubt };
 
 	out->rate = format->rate;
 	out->particles = table_create(NULL, cmd,

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "layout/search.h"
 #include <math.h>
@@ -44,7 +45,7 @@ static const struct opt opts[] = {
 	OPT_HEADING("Particles"),
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
 		"peak of a 100 um particle over the rms of the noise, in dB", NULL, 0 },
-	{ 0, "diameter", OPT_NUM, UNIT_LENGTH, &diameter, 1e-9, 0.1, "D",
+	{ 0, "diameter", OPT_NUM, UNIT_LENGTH, &diameter, 1e-9, DIAMETER_MOST, "D",
 		"diameter of the measured particle", NULL, 0 },
 	{ 0, "arrivals", OPT_NUM, UNIT_FREQUENCY, &arrivals, 0, 1e12, "F",
 		"particles per second", NULL, 0 },

@@ -337,8 +337,11 @@ static int check_state(
 /* Says so if the state or the fragments are doubtful by their own account; the status. */
 static int pass_doubt(struct lifetable *out, char *const *doubts)
 {
-	int status = 0;
+	const char *far = covariates_doubt();
+	int status = far ? EXIT_NOCONV : 0;
 
+	if (far)
+		table_comment(lifetable_out(out), "doubtful", "%s", far);
 	for (int k = -1; k < wear_files.n; k++) {
 		const char *why = k < 0 ? state_doubt() : doubts[k];
 

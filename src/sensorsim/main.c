@@ -204,17 +204,20 @@ int main(int argc, char **argv)
 		pass_traffic(&f, INFINITY, 1, table);
 	} else {
 		struct signal_out *out;
-		char *number, *cmd;
+		char *number, *cmd, *why = NULL;
 
 		format.channels = sensors_channels();
 		format.units = format.channels == 4 ? "V V V V" : "V V";
 		format.seed = number = xprintf("%ld", seed);
 		format.cmd = cmd = opt_cmd(source_cmd(f.source), NULL);
+		if (source_doubt(f.source))
+			format.doubt = why = xstrdup(source_doubt(f.source));
 		out = signal_create(NULL, &format);
 		run(&f, table, out);
 		signal_done(out);
 		free(number);
 		free(cmd);
+		free(why);
 	}
 	doubt = source_doubted(f.source);
 	if (table && doubt)

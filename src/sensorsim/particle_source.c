@@ -333,6 +333,11 @@ const char *source_cmd(const struct source *s)
 	return s->cmd;
 }
 
+const char *source_doubt(struct source *s)
+{
+	return s->table ? table_doubt(s->table) : NULL;
+}
+
 const char *source_doubted(struct source *s)
 {
 	if (!s->table)

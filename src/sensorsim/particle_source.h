@@ -32,7 +32,9 @@ const char *source_material(const struct source *s); /* of the last one */
 /* Velocity that none of them is below, m/s. */
 double source_slowest(const struct source *s);
 const char *source_cmd(const struct source *s); /* that made the table, or NULL */
-/* At the end: why its table is doubtful, with a warning, or NULL. */
+/* Why its table is doubtful, or NULL: as far as it is read by now; and at the end, with a
+ * warning. */
+const char *source_doubt(struct source *s);
 const char *source_doubted(struct source *s);
 void source_close(struct source *s);
 

@@ -284,6 +284,7 @@ static void table_begin(struct recording *r, struct input *in)
 	r->format.seed = told(r->table, "seed");
 	r->format.filter = told(r->table, "filter");
 	r->format.start = told(r->table, "start");
+	r->format.doubt = told(r->table, "doubtful");
 	if (table_upstream(r->table))
 		r->format.cmd = xstrdup(table_upstream(r->table));
 }
@@ -380,8 +381,8 @@ static struct table_out *create_text(const struct signal_format *f)
 	char rate[NUMBER_TEXT];
 	const struct {
 		const char *key, *value;
-	} more[] = { { "seed", f->seed }, { "filter", f->filter },
-		{ "start", f->start } };
+	} more[] = { { "seed", f->seed }, { "filter", f->filter }, { "start", f->start },
+		{ "doubtful", f->doubt } };
 
 	text_add(&columns, "time");
 	text_add(&units, "s");

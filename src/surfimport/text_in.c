@@ -313,25 +313,11 @@ static int is_sorted(const struct text *t, int column)
 	return (up > 0) != (down > 0);
 }
 
-/* Two columns or three of which one is sorted are no matrix of heights: eight random rows
- * are so by a chance of 2 / 8!. */
-static void refuse_points(const struct text *t)
-{
-	if (t->columns > 3 || t->columns < 2 || t->rows < 8)
-		return;
-	if (t->columns == 2 && is_sorted(t, 0))
-		die(EXIT_RUN,
-			"%s: two columns, positions and heights, are not a matrix: --profile "
-			"reads them",
-			t->c->name);
-	if (t->columns == 3 && (is_sorted(t, 0) || is_sorted(t, 1)))
-		die(EXIT_RUN,
-			"%s: three columns look like points x, y, z: want a matrix of heights, "
-			"or --profile for the last two",
-			t->c->name);
-}
+/* Rows from which on a sorted column holds positions: eight random heights are sorted by
+ * a chance of 2 / 8!. */
+enum { SORTED_ROWS = 8 };
 
-/* 1 if n > 3 numbers are equally spaced, as positions are, and not all the same. */
+/* 1 if n > 2 numbers are equally spaced, as positions are, and not all the same. */
 static int is_ramp(const double *x, long n, long stride)
 {
 	double step = (x[(n - 1) * stride] - x[0]) / (double)(n - 1);
@@ -339,14 +325,40 @@ static int is_ramp(const double *x, long n, long stride)
 	for (long i = 0; i < n; i++)
 		if (!(fabs(x[i * stride] - x[0] - (double)i * step) <= 0.02 * fabs(step)))
 			return 0;
-	return n > 3 && step != 0;
+	return n > 2 && step != 0;
+}
+
+/* 1 if two columns may be a profile: the first is sorted, or equally spaced and the
+ * second is not, which few heights are seldom by chance.  Two rows may be anything. */
+static int is_profile(const struct text *t)
+{
+	if (t->columns != 2)
+		return 0;
+	return (t->rows >= SORTED_ROWS && is_sorted(t, 0)) ||
+	       (is_ramp(t->value, t->rows, 2) && !is_ramp(t->value + 1, t->rows, 2));
+}
+
+/* Positions and heights are no matrix of heights. */
+static void refuse_points(const struct text *t)
+{
+	if (is_profile(t))
+		die(EXIT_RUN,
+			"%s: two columns, positions and heights, are not a matrix: --profile "
+			"reads them",
+			t->c->name);
+	if (t->columns == 3 && t->rows >= SORTED_ROWS &&
+		(is_sorted(t, 0) || is_sorted(t, 1)))
+		die(EXIT_RUN,
+			"%s: three columns look like points x, y, z: want a matrix of heights, "
+			"or --profile for the last two",
+			t->c->name);
 }
 
 /* 1 if the first of the lines of n samples is equally spaced and the second one is not.
  * The corner, which may hold anything, is left out. */
 static int is_edge(const double *z, long n, long along, long across)
 {
-	return is_ramp(z + along, n - 1, along) &&
+	return n > 4 && is_ramp(z + along, n - 1, along) &&
 	       !is_ramp(z + along + across, n - 1, along);
 }
 

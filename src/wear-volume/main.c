@@ -64,17 +64,15 @@ static double time_of(const struct table_in *t, int column, double before)
 static double volume_of(
 	const struct table_in *t, const struct columns *c, enum verdict v, long *without)
 {
-	double d = table_number(t, c->diameter), many = 1;
+	double d, many = 1;
 
 	if (v == VERDICT_DOUBTFUL)
 		return 0;
-	if (isnan(d)) {
+	if (isnan(table_number(t, c->diameter))) {
 		++*without;
 		return 0;
 	}
-	if (!(d >= 0 && d <= 1))
-		die(EXIT_RUN, "%s: line %ld: diameter is %g m, want 0 to 1 m",
-			table_name(t), table_line(t), d);
+	d = table_diameter(t, c->diameter);
 	if (v == VERDICT_UNRESOLVED && c->sources >= 0)
 		many = (double)table_whole(t, c->sources, 0, 1e15);
 	stats_add("particles", many);
