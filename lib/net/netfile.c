@@ -152,7 +152,7 @@ enum num_status netfile_write(
 	if (memory) {
 		write_text(memory, net, purpose, cmd);
 		whole = !ferror(memory);
-		whole &= !fclose(memory);
+		whole &= !fclose(memory) && text; /* glibc returns 0 without memory */
 	}
 	if (whole) {
 		fwrite(text, 1, n, f);

@@ -133,7 +133,8 @@ typedef double chi2_of(struct examples *, double);
 static int tune_rare(struct examples *ex, chi2_of *of, double before, double step)
 {
 	const double small = 5e-4;
-	const struct examples kept = *ex;
+	const struct joint_scene scene = ex->scene;
+	const double drift = ex->drift;
 	double middle = of(ex, before), best, now, below, above, none;
 
 	below = of(ex, before - step);
@@ -147,8 +148,8 @@ static int tune_rare(struct examples *ex, chi2_of *of, double before, double ste
 		now = 0;
 	if (fabs(now - before) > small)
 		return 1;
-	ex->scene = kept.scene;
-	ex->drift = kept.drift;
+	ex->scene = scene;
+	ex->drift = drift;
 	return 0;
 }
 
@@ -457,26 +458,33 @@ static double try_scatter(struct examples *ex, struct examples *rough, unsigned 
  * pulses of another shape look wider or narrower where they overlap. */
 static int learn_scatter(struct examples *ex, struct calibration *c)
 {
-	struct examples rough = *ex;
+	struct examples *rough; /* large for a stack */
 	double best = 0;
 
 	if (examples_pulses(ex) <= ex->count &&
 		ex->excess <= SIGMAS_SELDOM * sqrt(2 * ex->dof))
 		return 0;
-	examples_fit(&rough, EXAMPLES_ROUGH);
-	ex->status = rough.status;
+	rough = malloc(sizeof *rough);
+	if (!rough) {
+		ex->status = SEPARATE_MEMORY;
+		return 0;
+	}
+	*rough = *ex;
+	examples_fit(rough, EXAMPLES_ROUGH);
+	ex->status = rough->status;
 	for (unsigned set = 1; set < 1U << JOINT_OWN; set++) {
-		struct joint_scene scene = rough.scene;
+		struct joint_scene scene = rough->scene;
 		double balance;
 
 		scene.misfit = 0;
-		balance = try_scatter(ex, &rough, set, &scene);
+		balance = try_scatter(ex, rough, set, &scene);
 		if (balance > best) {
 			best = balance;
 			memcpy(ex->scene.scatter, scene.scatter, sizeof scene.scatter);
 			ex->scene.misfit = scene.misfit;
 		}
 	}
+	free(rough);
 	if (!(best > 0))
 		return 0;
 	memcpy(c->scatter, ex->scene.scatter, sizeof c->scatter);
