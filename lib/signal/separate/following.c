@@ -103,8 +103,9 @@ void separate_set_gain(struct separate *s, long long from)
 					 separate_noise_at(s, c, at[c]);
 }
 
-/* The scatter of what the last pulses that stand alone have of their own.  One that was
- * found is kept until these show another: fewer of them may not be significant. */
+/* The scatter of what the last pulses that stand alone have of their own, whenever there
+ * are ENOUGH others.  One that was found is kept until these show another: fewer of them
+ * may not be significant. */
 static void follow_scatter(struct separate *s, const struct account *a)
 {
 	double misfit = s->cal.misfit;
@@ -121,10 +122,10 @@ static void follow_scatter(struct separate *s, const struct account *a)
 		/* The ratio itself, whatever the gain followed meanwhile. */
 		if (own == JOINT_RATIO)
 			last->share += log(separate_gain_at(s, last->at));
-		n = ++s->owns[own] < TRACKED ? s->owns[own] : TRACKED;
-		scatter = n < ENOUGH ? 0
-				     : joint_scatter(
-					       own, kept, n, SIGMAS_NEVER * SIGMAS_NEVER);
+		if (++s->owns[own] % ENOUGH != 0)
+			continue;
+		n = s->owns[own] < TRACKED ? s->owns[own] : TRACKED;
+		scatter = joint_scatter(own, kept, n, SIGMAS_NEVER * SIGMAS_NEVER);
 		if (!(scatter > 0))
 			continue;
 		joint_set_scatter(&s->scene, own, scatter, kept, n, misfit);
