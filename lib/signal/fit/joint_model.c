@@ -450,6 +450,7 @@ void joint_make_columns(struct joint *j, int i)
 {
 	const struct joint_scene *s = &j->scene;
 	const struct joint_pulse *p = &j->pulse[i];
+	const double gain = s->gain * exp(p->own[JOINT_RATIO]);
 
 	for (int c = 0; c < 2; c++) {
 		struct column *col = &j->col[i][c];
@@ -467,7 +468,7 @@ void joint_make_columns(struct joint *j, int i)
 		/* T grows with t2 and falls with t1. */
 		turn_columns(by_t, by_T, a, c ? stretch : -stretch, col->n);
 		for (size_t k = 0; c && k < col->n; k++)
-			col->d[2][k] *= s->gain * exp(p->own[JOINT_RATIO]);
+			col->d[2][k] *= gain;
 		for (int k = 0; k < PAR; k++)
 			joint_hide(j, c, col->first, col->n, col->d[k]);
 	}
