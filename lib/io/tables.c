@@ -105,7 +105,8 @@ static void keep_key(struct table_in *t, char *comment)
 		t->unstated = 0;
 	}
 	keys_set(&t->keys, comment, value);
-	if (!strcmp(comment, "doubtful"))
+	/* records(1) ends a key of one record by one without a value. */
+	if (!strcmp(comment, "doubtful") && *value)
 		reasons_add(&t->reasons, value);
 	free(value);
 	if ((size_t)t->keys.n > t->most_keys)
