@@ -135,6 +135,28 @@ is "two ensembles of other numbers are joined" \
 roughgen --points 64 --length 100um --sq 0.5um --corr 10um | cat - h.nrrd >steps.nrrd
 fails "two records of one realisation" 3 'steps.nrrd: 1 records are of the realisation of an earlier one' \
 	abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 9um --surface steps.nrrd p.tsv
+# The heights say why they are doubtful, to all programs that read them next.
+keys() { head -c 1024 "$1" | grep -a '^doubtful:=' | cut -d = -f 2; }
+printf '# doubtful: bad balls\ndiameter\taspect\n11e-6\t3\n' >poor.tsv
+abrade --gap 9.5um --hardness 2GPa --friction 0.1 --slide 9um --surface h.nrrd poor.tsv >marked.nrrd 2>err
+is "grooves of doubtful particles make the surface doubtful" "$? $(keys marked.nrrd)" "3 bad balls"
+bemcontact --load 1N --young 210GPa --table contact.tsv marked.nrrd >contact.nrrd 2>err
+is "its contact is doubtful" \
+	"$? $(keys contact.nrrd) $(grep '^# doubtful' contact.tsv) $(grep -c 'marked.nrrd: doubtful by its own account: bad balls' err)" \
+	"3 bad balls # doubtful: bad balls 1"
+roughgen --measure marked.nrrd >measured.tsv 2>err
+is "so are its areal parameters" "$? $(grep '^# doubtful' measured.tsv)" "3 # doubtful: bad balls"
+roughgen --s-filter 10um marked.nrrd 2>err >smooth.nrrd
+is "so are its heights when filtered" "$? $(keys smooth.nrrd)" "3 bad balls"
+debrisgen --yield 1GPa --friction 0.3 --surface worn.nrrd contact.nrrd >lost.tsv 2>err
+is "so are its particles and the worn surface" "$? $(grep -c '^# doubtful: realisation [01]: bad balls' lost.tsv) $(keys worn.nrrd)" \
+	"3 2 bad balls"
+printf 'diameter\taspect\n11e-6\t3\n' >good.tsv
+abrade --gap 9.5um --hardness 2GPa --friction 0.1 --slide 9um --surface marked.nrrd --particles more.tsv good.tsv >again.nrrd 2>err
+is "so is the surface after further grooves" "$? $(keys again.nrrd) $(grep '^# doubtful' more.tsv)" \
+	"3 bad balls # doubtful: bad balls"
+abrade --gap 9.5um --hardness 2GPa --friction 0.1 --slide 9um --surface h.nrrd good.tsv >sound.nrrd
+is "a sound surface says nothing" "$? $(keys sound.nrrd)" "0 "
 # Three steps of one surface: a groove is there from the step of its particle on.
 roughgen --points 64 --length 100um --sq 0.5um --corr 10um --crown 2um | bemcontact --load 1N --young 210GPa |
 	debrisgen --yield 1GPa --friction 0.3 --young 210GPa --steps 3 --surface steps.nrrd >/dev/null 2>&1

@@ -60,6 +60,15 @@ rows() { grep -v '^#' "$1"; }
 	aopf $decide --time-unit h bare.tsv >bare.out
 }
 is "options convert to the unit of the table" "$(rows told.out | cksum)" "$(rows bare.out | cksum)"
+# Seconds of a series that may count hours would be a mission without a failure.
+for o in '--skip 5h' '--horizon 200h' '--after 1s' '--mission 18h' '--alarm 60h,20'; do
+	# shellcheck disable=SC2086 # options
+	fails "$o of a series without a unit of time" 2 "${o% *} has a unit, but the series names none of its times" \
+		aopf --threshold 1.8 $o bare.tsv
+done
+aopf --threshold 1.8 --mission 18 --alarm 60,20 bare.tsv | grep -v '^#' >a
+aopf --threshold 1.8 --mission 18h --alarm 60h,20h --time-unit h bare.tsv | grep -v '^#' >b
+same "without a unit, the times of options are in that of the series" a b
 is "a mission may fail" "$(column p_failure told.out | awk '$1 > 0 && $1 < 1' | wc -l | awk '{ print ($1 > 0) }')" 1
 fails "a time unit that contradicts the table" 2 "time-unit min contradicts '# units:' of told.tsv, h" aopf --threshold 2 --time-unit min told.tsv
 printf '# units: cycle Ah\nt\ty\n0\t1\n' >cycles.tsv

@@ -55,6 +55,22 @@ $apply --network "$shipped" $known --sections wide.tsv s.au >wide
 near "arrivals do not depend on the limits of the section" "$(column time1 wide | sed -n 3p)" \
 	"$(column time1 cnn.tsv | sed -n 3p)" 2e-4
 
+# What a doubtful record or a doubtful table of sections leads to is doubtful.
+(cat sections.tsv && echo '# doubtful: half of it is noise') >noisy.tsv
+# shellcheck disable=SC2086
+$apply --network "$shipped" $known --sections noisy.tsv s.au >noisy 2>err
+is "doubtful sections make the pulses doubtful" \
+	"$? $(grep '^# doubtful' noisy) $(grep -c 'noisy.tsv: doubtful by its own account: half of it is noise' err)" \
+	"3 # doubtful: half of it is noise 1"
+printf '# doubtful: cut off\ntime\tdiameter\n0.1\t1e-4\n0.2\t1e-4\n' |
+	sensorsim --duration 0.5s --snr 30dB --lag 0.2ms:0.5ms - >cut.au 2>/dev/null
+printf 'section\tbegin\tend\n0\t0.09\t0.13\n' >one.tsv
+# shellcheck disable=SC2086
+$apply --network "$shipped" $known --sections one.tsv cut.au >cut 2>err
+is "a doubtful record makes the pulses doubtful" \
+	"$? $(grep '^# doubtful' cut) $(grep -c 'cut.au: doubtful by its own account: cut off' err)" \
+	"3 # doubtful: cut off 1"
+
 # Too long a section is refused and says so.
 printf 'section\tbegin\tend\n1\t0.1\t0.16\n2\t0.2\t0.23\n' >long.tsv
 # shellcheck disable=SC2086

@@ -202,6 +202,15 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 debrisfit --yield 250MPa:500MPa --friction 0:0.5 rough.nrrd >doubtful.tsv 2>said
 is 'a fit with a contact that did not converge is doubtful' "$? $(sed -n 's/^# doubtful: //p' doubtful.tsv)" \
 	'3 a contact did not converge'
+{
+	cat fitted.nrrd
+	printf '# doubtful: worn\ndiameter\n1e-9\n' >free.tsv
+	roughgen --points 32 --length 0.25mm --sq 1um --corr 10um --crown auto --seed 77 |
+		abrade --gap 1um --hardness 2GPa --friction 0.1 --motion groove --surface - free.tsv |
+		bemcontact --pressure 50MPa --young 210GPa
+} >worn.nrrd 2>err
+debrisfit --yield 250MPa:500MPa --friction 0:0.5 worn.nrrd >worn.tsv 2>said
+is 'a fit to doubtful surfaces is doubtful' "$? $(sed -n 's/^# doubtful: //p' worn.tsv) $(grep -c 'worn.nrrd: doubtful by its own account: worn' said)" '3 worn 1'
 debrisgen --yield 355MPa --friction 0.3 --surrogate doubtful.tsv --width 10 --audit 0 --summary steps.tsv hidden.nrrd >doubted.tsv 2>said
 is 'particles of a doubtful surrogate have status 3' \
 	"$? $(grep -c 'doubtful.tsv: doubtful by its own account: a contact did not converge' said)" '3 1'

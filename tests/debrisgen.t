@@ -299,6 +299,9 @@ cat cut.nrrd cut.nrrd >twice.nrrd
 $wear twice.nrrd 2>err >cut.tsv
 is "the table says which realisations are cut off" "$(sed -n 's/^# doubtful: //p' cut.tsv | tr '\n' ';')" \
 	'realisation 0: particles are cut off at the border of the grid;realisation 1: particles are cut off at the border of the grid;'
+$wear --surface worn.nrrd cut.nrrd >t.tsv 2>err
+is "so does the worn surface" "$(strings worn.nrrd | grep '^doubtful:=')" \
+	'doubtful:=particles are cut off at the border of the grid'
 # Worn surfaces keep what their contact was solved with.
 roughgen -n 32 -L 0.25mm -q 1um -l 30um -c 2 -s 4 |
 	bemcontact --boundary periodic --pressure 30MPa -E 210GPa --hardness 3GPa >pair.nrrd

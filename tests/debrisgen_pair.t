@@ -15,6 +15,13 @@ press="--young 210GPa --pressure 20MPa --boundary periodic"
 wear="debrisgen --yield 355MPa --friction 0.3 $press"
 bemcontact $press a.nrrd >start.nrrd
 
+# Particles and surfaces are as doubtful as the counterface.
+printf '# doubtful: bad balls\ndiameter\n1e-9\n' |
+	abrade --gap 1um --hardness 2GPa --friction 0.1 --motion groove --surface flat.nrrd >poor.nrrd 2>err
+$wear --steps 2 --counterface poor.nrrd --slide 0.125mm --counter-surface other.nrrd start.nrrd >poor 2>err
+is "what a doubtful counterface wears is doubtful" \
+	"$? $(grep -c '^# doubtful: realisation 0: .*bad balls' poor) $(grep -c 'poor.nrrd: doubtful by its own account: bad balls' err) $(
+		strings other.nrrd | grep -c '^doubtful:=.*bad balls')" "3 1 1 2"
 # A flat counterface changes nothing, wherever it slides.
 $wear --steps 2 --summary none.tsv start.nrrd >none 2>err
 $wear --steps 2 --counterface flat.nrrd --slide 0.125mm --summary flat.tsv start.nrrd >flat 2>err

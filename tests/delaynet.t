@@ -56,6 +56,12 @@ delaynet --task score --columns 40 --count 50 a.net >b.tsv
 near "data and apply give the same score" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
 delaynet --task apply --network a.net <x.snd >in.tsv
 same "apply reads a pipe" in.tsv out.tsv
+printf '# doubtful: cut off\ntime\tdiameter\n0.001\t1e-4\n' |
+	sensorsim --duration 4ms --rate 10kHz - >cut.au 2>/dev/null
+delaynet --task apply --network a.net cut.au >cut.tsv 2>err
+is "a doubtful signal makes the delays doubtful" \
+	"$? $(grep '^# doubtful' cut.tsv) $(grep -c 'cut.au: doubtful by its own account: cut off' err)" \
+	"3 # doubtful: cut off 1"
 is "data can be written in parts" "$(for f in 0 3; do delaynet --task data --columns 40 -f "$f" -c 3 | head -c -16 | tail -c 1920; done | cksum)" \
 	"$(delaynet --task data --columns 40 -c 6 | head -c -16 | tail -c 3840 | cksum)"
 

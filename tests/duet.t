@@ -217,8 +217,10 @@ near "dense: the sum of squares is right within 15 %" "$(awk -F '\t' '/^#/ { nex
 # rows say is in them is no more than there is.
 sensorsim --uniform 40um:180um --number 800 --duration 4s --snr 40dB --pulse lorentz \
 	--lag 0:0.4ms --seed 405 --truth truth.tsv >tails.au
-duet --sections sections.tsv tails.au >found.tsv 2>err
+duet --sections sections.tsv --detectable limits.tsv tails.au >found.tsv 2>err
 is "short dense stretches: doubtful" $? 3
+is "all tables say so" "$(grep -c '^# doubtful' sections.tsv limits.tsv found.tsv | tr '\n' ' ')" \
+	"sections.tsv:1 limits.tsv:1 found.tsv:1 "
 awk -F '\t' '/^#/ { next } $1 == "section" || $1 == "particle" && $2 == "time1" { file++; for (i = 1; i <= NF; i++) c[$i] = i; next }
 	file == 1 && $c["verdict"] == "unresolved" { from[$c["section"]] = $c["begin"]; to[$c["section"]] = $c["end"] }
 	file == 2 { if ($c["kind"] == "particle") { time[n] = $c["time1"]; d[n] = $c["diameter"]; a[n++] = $c["amplitude"] } }

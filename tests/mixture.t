@@ -43,5 +43,35 @@ frames apart.au 8 >apart
 same "a record from a pipe gives the same result" piped apart
 head -c 32 mix.au >none.au
 fails "no frames" 3 "nothing in common" duet --method duet --align 0 none.au
+duet --method duet --align 0 --sections no.sections --histogram no.h none.au >no.tsv 2>/dev/null
+is "all tables say that they are doubtful" \
+	"$(grep -c '^# doubtful: nothing in common of both channels' no.tsv no.sections no.h | tr '\n' ' ')" \
+	"no.tsv:1 no.sections:1 no.h:1 "
+# Sensor 2 hears the tones 40 samples later.
+awk '{ a[NR] = $3; b[NR] = $4 } END { for (i = 41; i <= NR; i++) print a[i] + b[i], a[i - 40] + b[i - 40] }' all.txt |
+	perl -e 'print pack("N8", 0x2e736e64, 32, 0xffffffff, 7, 8000, 2, 0, 0);
+	while (<>) { my @c = split; print pack("d>2", @c) }' >late.au
+duet --method duet --align 0 late.au >late.tsv 2>err
+is "the table says that delays beyond 16 samples are doubtful" \
+	"$? $(grep '^# doubtful' late.tsv)" "3 # doubtful: delays beyond 16 samples"
+# Voices of 150 and 190 Hz at 16 kHz that take turns, with nothing below: one is heard 10 or
+# 24 samples later.
+voices() {
+	awk -v late="$1" 'BEGIN { pi = atan2(0, -1); srand(1)
+		for (n = 0; n < 32000; n++) { x = y = 0
+			for (k = 0; k < 2; k++) { d = k ? late : 1
+				for (h = 1; h < 12; h++) { w = 2 * pi * h * (150 + 40 * k) / 16000
+					x += voice(n, k) * cos(w * n + h * h) / h
+					y += voice(n - d, k) * cos(w * (n - d) + h * h) / h } }
+			print x + (rand() - 0.5) / 50, y + (rand() - 0.5) / 50 } }
+	function voice(n, k, e) { e = sin(pi * (n / 16000 * 3 + k / 2)); return e > 0 ? e * e : 0 }' |
+		perl -e 'print pack("N8", 0x2e736e64, 32, 0xffffffff, 7, 16000, 2, 0, 0);
+		while (<>) { my @c = split; print pack("d>2", @c) }'
+}
+for late in 10 24; do
+	voices $late | duet --method duet --align 0 >late.tsv 2>err
+	echo $?
+done >late
+is "voices without low frequencies are doubted with a delay of 24 samples, not of 10" "$(paste -s -d ' ' late)" "0 3"
 fails "a hop without a window" 2 "hop requires a --window" duet --method duet --align 0 --hop 9 mix.au
 done_testing

@@ -71,6 +71,9 @@ reasons $(seq 1 1500) >many
 aopf --threshold 9 many 2>err >out || status=$?
 is 'of many reasons eight are quoted, up to a thousand are counted' "$(cat err)" \
 	'aopf: many: doubtful by its own account: 1; 2; 3; 4; 5; 6; 7; 8; and at least 992 more reasons'
+printf '# doubtful:\nt\ty\n0\t1\n1\t2\n' >none
+aopf --threshold 9 none >out 2>err
+is 'a reason without a word is none' "$? $(grep -c doubtful out err | tr '\n' ' ')" '0 out:0 err:0 '
 printf 'time1\tdiameter\n1\tnan\n# doubtful: pulses differ\n' >both
 wear-volume --period 1s both >out 2>err || status=$?
 is 'reasons of a program stand beside those of its input' "$(sed -n 's/^# doubtful: //p' out | tr '\n' ';')" \

@@ -36,7 +36,7 @@ delaynet --task score --columns 40 --count 50 small.net >scored.tsv
 delaynet --task data --columns 40 --count 5 --truth delays.tsv >examples.au
 delaynet --task apply --network small.net examples.au >applied.tsv
 printf 'unit\tt\ty\nA\t0\t1\nA\t1\t2\nA\t2\t2\nA\t3\t3\nA\t4\t3\n' >fleet.tsv
-aopf --unit unit --threshold 9 --mission 3s --cost-ratio 2 --alarm 2s --weights fleet.tsv >outlook.tsv 2>err
+aopf --unit unit --threshold 9 --mission 3 --cost-ratio 2 --alarm 2 --weights fleet.tsv >outlook.tsv 2>err
 aopf fleet.tsv >filtered.tsv
 awk 'BEGIN { print "time1\tdiameter\tmaterial"; for (t = 0; t < 60; t++) print t "\t1e-4\tsteel" }' >shed.tsv
 wear-volume --period 10s shed.tsv >volume.tsv

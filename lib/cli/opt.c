@@ -640,8 +640,7 @@ int opt_given_bare(const char *word)
 {
 	for (int i = 0; i < nrows; i++)
 		if (given[i] && *given[i] && strcmp(rows[i]->word, word) == 0)
-			return strchr("0123456789.", given[i][strlen(given[i]) - 1]) !=
-			       NULL;
+			return !given[i][strspn(given[i], "0123456789+-.eE,:x")];
 	return 0;
 }
 

@@ -99,7 +99,7 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 
 /* 1 if the option with this word was on the command line. */
 int opt_given(const char *word);
-/* 1 if it was, and its number has no unit. */
+/* 1 if it was, and none of its numbers has a unit. */
 int opt_given_bare(const char *word);
 /* Dies if an option of these words, separated by blanks, was given without the other one,
  * which it needs to have an effect. */

@@ -8,6 +8,7 @@
 #include "io/kinds.h"
 #include "io/magnitudes.h"
 #include "io/nrrd.h"
+#include "io/reasons.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,6 +18,7 @@ struct fields_in {
 	struct raw_layout raw;
 	int is_raw;
 	long unmarked; /* records that do not state whether another one follows */
+	struct reasons reasons;
 };
 
 struct fields_out {
@@ -179,6 +181,8 @@ int fields_read(struct fields_in *in, struct record *r)
 	record_clear(r);
 	if (input_peek(in->at.in) >= 0) {
 		read_record(in, r);
+		if (record_get(r, "doubtful"))
+			reasons_add(&in->reasons, record_get(r, "doubtful"));
 		return 1;
 	}
 	if (in->at.record == 0)
@@ -215,8 +219,14 @@ long fields_count(const struct fields_in *in)
 	return in->at.record;
 }
 
+const char *fields_doubted(struct fields_in *in)
+{
+	return reasons_warn(&in->reasons, in->at.name);
+}
+
 void fields_close(struct fields_in *in)
 {
+	reasons_free(&in->reasons);
 	input_close(in->at.in);
 	free(in);
 }

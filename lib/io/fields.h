@@ -52,6 +52,10 @@ int fields_last(const struct fields_in *in);
 int fields_read(struct fields_in *in, struct record *r);
 const char *fields_name(const struct fields_in *in); /* for messages: "surf.nrrd" */
 long fields_count(const struct fields_in *in);       /* records read so far */
+/* Why records read so far are doubtful, as their keys "doubtful" say, all that differ as
+ * one text, with a warning; NULL if none is.  Valid until the next call and
+ * fields_close(). */
+const char *fields_doubted(struct fields_in *in);
 void fields_close(struct fields_in *in);
 
 /* path NULL is standard output, which must not be a terminal. */

@@ -2,6 +2,8 @@
 #ifndef IO_KEYS_H
 #define IO_KEYS_H
 
+enum { KEYS_MOST = 1000 }; /* of a table */
+
 struct keys {
 	int n;
 	char **key, **value;

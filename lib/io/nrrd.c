@@ -420,8 +420,13 @@ static struct text make_header(const struct record *r, long number, int last)
 		text_add(&t, "%s%s%s%s", i ? ", " : "", r->name[i],
 			*r->unit[i] ? " " : "", r->unit[i]);
 	text_add(&t, "\nrealisation:=%ld\n", r->realisation);
+	/* The key that some records alone have is last: the others agree in their order.
+	 */
 	for (int i = 0; i < r->keys.n; i++)
-		write_key(&t, r->keys.key[i], r->keys.value[i]);
+		if (strcmp(r->keys.key[i], "doubtful") != 0)
+			write_key(&t, r->keys.key[i], r->keys.value[i]);
+	if (record_get(r, "doubtful"))
+		write_key(&t, "doubtful", record_get(r, "doubtful"));
 	if (r->cmd)
 		write_key(&t, "cmd", r->cmd);
 	text_add(&t, "%srecord %ld, %s, crc32 %s\n", mark_key, number,

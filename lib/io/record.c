@@ -156,6 +156,18 @@ void record_drop_key(struct record *r, const char *key)
 	keys_drop(&r->keys, key);
 }
 
+void record_doubt(struct record *r, const char *why)
+{
+	const char *before = record_get(r, "doubtful");
+	char *both;
+
+	if (before && strstr(before, why))
+		return;
+	both = before ? xprintf("%s; %s", before, why) : xstrdup(why);
+	record_set(r, "doubtful", "%s", both);
+	free(both);
+}
+
 const char *record_get(const struct record *r, const char *key)
 {
 	return keys_get(&r->keys, key);

@@ -45,6 +45,8 @@ void record_drop(struct record *r, const char *name);
 /* Keys; record_get returns NULL if absent. */
 void record_set(struct record *r, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
+/* Adds a reason to the key "doubtful", which programs that read the record repeat. */
+void record_doubt(struct record *r, const char *why);
 void record_drop_key(struct record *r, const char *key);
 const char *record_get(const struct record *r, const char *key);
 /* Copies the realisation and all keys but cmd. */

@@ -8,6 +8,7 @@
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/keys.h"
+#include "io/reasons.h"
 #include "num/crc32.h"
 #include <math.h>
 #include <stdarg.h>
@@ -15,11 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a table */
-/* Reasons for doubt that are quoted: all that one record has, and some lines of a
- * terminal where each of many realisations has one of its own. */
-enum { REASONS_QUOTED = 8 };
-
+enum { LINE_MOST = 1 << 24 }; /* bytes of a line */
 static const char promise[] = "# stream: " ENDS_PROMISE "\n";
 static const char end_line[] = "# end: ";
 
@@ -44,9 +41,8 @@ struct table_in {
 	int pending;  /* the row read ahead by table_open() has not been returned yet */
 	int stated;   /* units stand between the row before and this line */
 	int unstated; /* a further header came without units */
-	struct keys keys;    /* of comment lines */
-	struct keys reasons; /* of the lines "# doubtful:", each once, without values */
-	char *doubt;         /* the reasons as one text */
+	struct keys keys;       /* of comment lines */
+	struct reasons reasons; /* of the lines "# doubtful:" */
 	table_comment_taker *take;
 	void *context; /* of take */
 	struct upstream upstream;
@@ -109,8 +105,9 @@ static void keep_key(struct table_in *t, char *comment)
 		t->unstated = 0;
 	}
 	keys_set(&t->keys, comment, value);
-	if (!strcmp(comment, "doubtful") && (size_t)t->reasons.n < t->most_keys)
-		keys_set(&t->reasons, value, "");
+	/* records(1) ends a key of one record by one without a value. */
+	if (!strcmp(comment, "doubtful") && *value)
+		reasons_add(&t->reasons, value);
 	free(value);
 	if ((size_t)t->keys.n > t->most_keys)
 		die(EXIT_RUN, "%s: line %ld: more than %zu keys", t->name, t->number,
@@ -555,27 +552,12 @@ void table_one_unit(struct table_in *t)
 
 const char *table_doubt(struct table_in *t)
 {
-	int n = t->reasons.n;
-
-	if (n == 0)
-		return NULL;
-	free(t->doubt);
-	t->doubt = xstrdup(t->reasons.key[0]);
-	for (int i = 1; i < n && i < REASONS_QUOTED; i++)
-		t->doubt = xappend(t->doubt, "; %s", t->reasons.key[i]);
-	if (n > REASONS_QUOTED)
-		t->doubt = xappend(t->doubt, "; and %s%d more reasons",
-			(size_t)n < t->most_keys ? "" : "at least ", n - REASONS_QUOTED);
-	return t->doubt;
+	return reasons_text(&t->reasons);
 }
 
 const char *table_doubted(struct table_in *t)
 {
-	const char *why = table_doubt(t);
-
-	if (why)
-		warn("%s: doubtful by its own account: %s", table_name(t), why);
-	return why;
+	return reasons_warn(&t->reasons, table_name(t));
 }
 
 void table_close(struct table_in *t)
@@ -587,8 +569,7 @@ void table_close(struct table_in *t)
 	free(t->scale);
 	free(t->cell);
 	keys_free(&t->keys);
-	keys_free(&t->reasons);
-	free(t->doubt);
+	reasons_free(&t->reasons);
 	upstream_free(&t->upstream);
 	free(t->unit);
 	free(t->line);

@@ -5,6 +5,7 @@
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "common/verdicts.h"
+#include "io/reasons.h"
 #include "io/tables.h"
 #include "particles_in.h"
 #include "scratches.h"
@@ -73,13 +74,14 @@ static const struct prog prog = { "abrade",
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
 static struct population_mean mean = { NAN, { NAN, NAN }, NAN };
-static int doubtful, stepped;
+static struct reasons doubts;
+static int stepped;
 static double rolling, yielding, buried; /* particles */
 
-/* Both tables say it too, since the exit status is lost in a pipe. */
+/* The tables and the surfaces say it too, since the exit status is lost in a pipe. */
 static void doubt(const char *why)
 {
-	doubtful = 1;
+	reasons_add(&doubts, why);
 	if (table)
 		table_comment(table, "doubtful", "%s", why);
 	if (summary)
@@ -287,6 +289,7 @@ int main(int argc, char **argv)
 	long gaps = 0;
 	const char *upstream;
 	char *cmd, *side;
+	int doubtful;
 
 	check_options(argc - operand);
 	par = parameters();
@@ -327,22 +330,6 @@ int main(int argc, char **argv)
 		warn("no particle carries the load of %g N: the surfaces touch", load);
 		doubt("no particle carries the load");
 	}
-	if (surface_path) {
-		size_t again,
-			left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
-				particles_apart(source), stepped, cmd, &again);
-
-		if (again > 0) {
-			warn("%s: %zu records are of the realisation%s of an earlier one: all its grooves are cut into each of them",
-				surface_path, again, stepped ? " and step" : "");
-			doubt("the grooves of some particles are cut more than once");
-		}
-		if (left > 0) {
-			warn("%zu grooves are left out: %s has no record of their realisation%s",
-				left, surface_path, stepped ? " and step" : "");
-			doubt("grooves without a surface are left out");
-		}
-	}
 	if (motion == ABRASION_BY_SHAPE && !particles_shaped(source) &&
 		(rolling > 0 || population))
 		warn("particles without aspect are spheres, which roll and remove nothing; "
@@ -357,6 +344,26 @@ int main(int argc, char **argv)
 		doubt("the diameters of particles that are not ferrous");
 	if (particles_doubted(source))
 		doubt(particles_doubted(source));
+	if (surface_path) {
+		char *own;
+		size_t again, left = scratches_cut(surface_path, slide, cutting,
+				      (uint64_t)seed, particles_apart(source), stepped,
+				      cmd, reasons_text(&doubts), &again, &own);
+
+		if (again > 0) {
+			warn("%s: %zu records are of the realisation%s of an earlier one: all its grooves are cut into each of them",
+				surface_path, again, stepped ? " and step" : "");
+			doubt(scratched_again);
+		}
+		if (left > 0) {
+			warn("%zu grooves are left out: %s has no record of their realisation%s",
+				left, surface_path, stepped ? " and step" : "");
+			doubt("grooves without a surface are left out");
+		}
+		if (own)
+			doubt(own);
+		free(own);
+	}
 	particles_close(source);
 	if (table)
 		table_done(table);
@@ -364,5 +371,7 @@ int main(int argc, char **argv)
 		table_done(summary);
 	free(cmd);
 	free(side);
+	doubtful = reasons_text(&doubts) != NULL;
+	reasons_free(&doubts);
 	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -10,6 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+const char scratched_again[] = "the grooves of some particles are cut more than once";
+
 struct scratch {
 	struct moment from;
 	double diameter, depth, share;
@@ -38,12 +40,14 @@ static struct moment moment_of(const struct record *r, int stepped)
 }
 
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
-	int apart, int stepped, const char *cmd, size_t *again)
+	int apart, int stepped, const char *cmd, const char *why, size_t *again,
+	char **own)
 {
 	size_t left = 0;
 	struct fields_in *in = fields_open(path, NULL);
 	struct fields_out *out = NULL;
 	struct record r = { 0 };
+	const char *doubted;
 	double laps = 0; /* the most */
 
 	*again = 0;
@@ -55,7 +59,12 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 		if (r.nz != 1)
 			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
 				fields_name(in), fields_count(in), r.nz);
-		*again += (size_t)moments_again(&seen, now);
+		if (moments_again(&seen, now)) {
+			++*again;
+			record_doubt(&r, scratched_again);
+		}
+		if (why)
+			record_doubt(&r, why);
 		for (size_t i = 0; i < n; i++) {
 			struct groove g = { .length = list[i].share * length,
 				.diameter = list[i].diameter,
@@ -94,6 +103,8 @@ size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
 		warn("%s: grooves pass over the surface up to %.3g times in the same track: "
 		     "--slide is longer than its side",
 			fields_name(in), laps);
+	doubted = fields_doubted(in);
+	*own = doubted ? xstrdup(doubted) : NULL;
 	fields_close(in);
 	free(list);
 	free(seen.of);

@@ -13,8 +13,13 @@ void scratches_add(
  * this cmd, to standard output: into each record those of its realisation (of all if
  * apart is 0) and, if stepped, of its step and earlier ones.  Returns the number of
  * grooves that no surface has; again: of records whose realisation, and if stepped step,
- * is that of an earlier one. */
+ * is that of an earlier one.  why: the grooves are doubtful, and the records become so,
+ * NULL: they are not; own: the same of the records themselves, fresh memory. */
 size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
-	int apart, int stepped, const char *cmd, size_t *again);
+	int apart, int stepped, const char *cmd, const char *why, size_t *again,
+	char **own);
+
+/* Why the records that are counted by again are doubtful. */
+extern const char scratched_again[];
 
 #endif

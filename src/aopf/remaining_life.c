@@ -309,6 +309,13 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 	for (size_t i = 0; i < sizeof timed / sizeof *timed; i++)
 		needed |= opt_given(timed[i]);
 	timeunit_settle(series_table(in), series_time_column(in), needed);
+	for (size_t i = 0; i < sizeof timed / sizeof *timed; i++)
+		if (opt_given(timed[i]) && !opt_given_bare(timed[i]) &&
+			!strcmp(timeunit_word(), "1"))
+			die(EXIT_USAGE,
+				"--%s has a unit, but the series names none of its times: specify "
+				"--time-unit",
+				timed[i]);
 	series_scale(in, 1, 1); /* a unit that changes within the table is an error */
 	if (isnan(outlook_threshold))
 		return;

@@ -389,6 +389,7 @@ int main(int argc, char **argv)
 	struct fields_in *in;
 	struct fields_out *out;
 	struct pool *pool;
+	const char *why;
 
 	check_options();
 	pool = pool_new((int)press.threads);
@@ -412,6 +413,11 @@ int main(int argc, char **argv)
 		progress_within(1, part.last);
 	}
 	edge_load_warn(&edge, fields_name(in));
+	why = fields_doubted(in);
+	if (why) {
+		status = EXIT_NOCONV;
+		tables_doubt(why);
+	}
 	fields_done(out);
 	tables_done();
 	fields_close(in);

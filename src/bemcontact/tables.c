@@ -125,6 +125,14 @@ void tables_put(const struct record *r, const struct contact_par *par,
 		contact_edge_load(&grid, pressure));
 }
 
+void tables_doubt(const char *why)
+{
+	if (table)
+		table_comment(table, "doubtful", "%s", why);
+	if (patches)
+		table_comment(patches, "doubtful", "%s", why);
+}
+
 void tables_done(void)
 {
 	if (table)

@@ -16,6 +16,8 @@ void tables_open(const char *upstream);
 void tables_put(const struct record *r, const struct contact_par *par,
 	const struct contact_result *found, const double *pressure, double stiffness,
 	int converged, int last);
+/* The tables say that they are doubtful. */
+void tables_doubt(const char *why);
 void tables_done(void);
 
 #endif

@@ -7,6 +7,7 @@
 #include "common/surrogate_table.h"
 #include "debris/debris.h"
 #include "io/fields.h"
+#include "io/reasons.h"
 #include "num/checksum.h"
 #include "num/room.h"
 #include <math.h>
@@ -145,6 +146,8 @@ int main(int argc, char **argv)
 	enum surrogate_status status;
 	long surfaces = 0;
 	char *cmd = NULL;
+	struct reasons doubts = { 0 };
+	const char *why;
 	int done = EXIT_SUCCESS;
 
 	if (!yield.n)
@@ -172,8 +175,14 @@ int main(int argc, char **argv)
 			fields_name(in), surfaces, count);
 	if (status == SURROGATE_MEMORY)
 		die(EXIT_RUN, "out of memory");
-	surrogate_write(&s, &report, cmd,
-		done == EXIT_SUCCESS ? NULL : "a contact did not converge");
+	if (done != EXIT_SUCCESS)
+		reasons_add(&doubts, "a contact did not converge");
+	why = fields_doubted(in);
+	if (why) {
+		reasons_add(&doubts, why);
+		done = EXIT_NOCONV;
+	}
+	surrogate_write(&s, &report, cmd, reasons_text(&doubts));
 	note("of %ld surfaces held back the 90 %% interval holds the total volume of %ld; it "
 	     "is off by %.3g rms",
 		report.checked, report.within, report.rms);
@@ -185,6 +194,7 @@ int main(int argc, char **argv)
 	free(sample);
 	free(seen);
 	free(cmd);
+	reasons_free(&doubts);
 	record_free(&r);
 	fields_close(in);
 	return shell_done(done);

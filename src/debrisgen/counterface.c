@@ -59,6 +59,7 @@ void counterface_close(struct counterface *c)
 		return;
 	record_free(&c->record);
 	free(c->given);
+	fields_doubted(c->in);
 	fields_close(c->in);
 	free(c);
 }

@@ -50,16 +50,16 @@ struct run {
 	struct wearing *wearing;
 	struct worn *out; /* NULL before the first record */
 	int status;
-	const char *doubt; /* why the present record is doubtful, NULL: it is not */
+	struct record *now; /* the present record; its key "doubtful" tells why it is */
 	struct moments worn;
 	int again; /* an earlier record had a step of a later one */
 };
 
-/* The table says it too, since the exit status is lost in a pipe. */
+/* The tables and the surfaces say it too, since the exit status is lost in a pipe. */
 static void doubt(struct run *run, const char *why)
 {
 	run->status = EXIT_NOCONV;
-	run->doubt = why;
+	record_doubt(run->now, why);
 }
 
 /* One surface during its steps. */
@@ -239,9 +239,10 @@ static void wear_record(struct run *run, struct record *r)
 	int last = fields_last(run->in);
 	struct scene c = { 0 };
 	struct worn_conditions conditions;
+	const char *why;
 	long k;
 
-	run->doubt = NULL;
+	run->now = r;
 	open_scene(run, r, &c);
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
@@ -256,16 +257,18 @@ static void wear_record(struct run *run, struct record *r)
 				doubt(run, "most of the cells are in contact");
 			break;
 		}
-		wear_step(run, &c, c.done + k);
 		check_again(run, r->realisation, c.done + k);
+		wear_step(run, &c, c.done + k);
 	}
 	if (k > 1)
 		worn_end(run->out, r->realisation, c.done + k - 1);
-	if (run->doubt) {
-		char *why = xprintf("realisation %ld: %s", r->realisation, run->doubt);
+	why = record_get(r, "doubtful");
+	if (why) {
+		char *text = xprintf("realisation %ld: %s", r->realisation, why);
 
-		worn_doubt(run->out, why);
-		free(why);
+		run->status = EXIT_NOCONV;
+		worn_doubt(run->out, text);
+		free(text);
 	}
 }
 
@@ -305,9 +308,11 @@ int main(int argc, char **argv)
 	edge_load_warn(&run.edge, fields_name(run.in));
 	warn_of_border(&run);
 	if (!wearing_warn(run.wearing)) {
-		doubt(&run, "the surrogate is of other surfaces, or doubtful itself");
-		worn_doubt(run.out, run.doubt);
+		run.status = EXIT_NOCONV;
+		worn_doubt(run.out,
+			"the surrogate is of other surfaces, or doubtful itself");
 	}
+	fields_doubted(run.in);
 	worn_close(run.out);
 	free(run.worn.of);
 	wearing_close(run.wearing);

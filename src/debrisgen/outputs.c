@@ -298,7 +298,7 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 static void bare_record(
 	struct record *out, const struct record *r, const char *option, long step)
 {
-	static const char *const kept[] = { "seed", "sq", "crown", NULL };
+	static const char *const kept[] = { "seed", "sq", "crown", "doubtful", NULL };
 
 	record_init(out, r->nx, r->ny, r->dx, r->dy);
 	out->realisation = r->realisation;
@@ -335,6 +335,8 @@ static void put_counter(
 	out.realisation = c->r->realisation;
 	out.cmd = cmd_of(c->r->cmd, "--counter-surface");
 	record_set(&out, "step", "%ld", s->number);
+	if (record_get(c->r, "doubtful"))
+		record_doubt(&out, record_get(c->r, "doubtful"));
 	memcpy(record_add(&out, "height", "m"), r->data[record_find(r, "height")],
 		(size_t)r->nx * (size_t)r->ny * sizeof(double));
 	held_put(f, &out);

@@ -229,12 +229,18 @@ static void prepare_second(struct wearing *w, const struct record *r)
 			fields_count(w->in), r->nx, r->ny);
 }
 
-void wearing_prepare(struct wearing *w, const struct record *r)
+void wearing_prepare(struct wearing *w, struct record *r)
 {
 	struct contact_par pressing = press_par(r, w->pool);
 
-	if (w->counterface)
+	if (w->counterface) {
+		const char *why;
+
 		counterface_next(w->counterface, r);
+		why = record_get(counterface_record(w->counterface), "doubtful");
+		if (why)
+			record_doubt(r, why);
+	}
 	if (w->debris && press_same(&pressing, &w->pressing))
 		return;
 	if (richardson && (r->nx % 4 || r->ny % 4 || r->nx < 32 || r->ny < 32))

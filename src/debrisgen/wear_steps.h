@@ -16,8 +16,8 @@ struct wearing;
 struct wearing *wearing_open(const struct fields_in *in, long steps);
 void wearing_close(struct wearing *w);
 
-/* Serves grids like that of r from now on. */
-void wearing_prepare(struct wearing *w, const struct record *r);
+/* Serves grids like that of r from now on.  A doubtful counterface makes r doubtful. */
+void wearing_prepare(struct wearing *w, struct record *r);
 /* Load and contact under the pressure of c, for wearing_step() as well. */
 void wearing_contact(
 	struct wearing *w, const struct worn_surface *c, struct debris_step *s);

@@ -40,11 +40,6 @@ void arrivals_check(void)
 				"--pulse-duration and --align");
 }
 
-int arrivals_refused(void)
-{
-	return refused > 0;
-}
-
 /* Drops all frames before from and reads up to frame to. */
 static void move_stretch(struct stretch *s, long long from, long long to)
 {
@@ -161,24 +156,34 @@ static void drain(struct stretch *s)
 		s->ended = signal_read_some(s->in, x, 1) == 0;
 }
 
-void arrivals_apply(const char *network, const char *record)
+int arrivals_apply(const char *network, const char *record)
 {
 	struct netfile file;
 	struct network *net = lessons_network(network, &file);
+	const char *why[2];
 	struct stretch s = { .in = signal_open(record, NULL) };
 	struct table_in *in = table_open(sections_file);
 	char *cmd = opt_cmd(signal_format(s.in)->cmd, NULL);
 	struct table_out *out = table_create(NULL, cmd, "1 s s V s 1 1 1",
 		"particle time1 time2 amplitude delay section sources verdict");
+	int doubtful;
 
 	if (signal_format(s.in)->channels != 2)
 		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(s.in),
 			signal_format(s.in)->channels);
 	work_sections(net, &s, in, out);
 	drain(&s);
+	doubtful = refused > 0;
 	if (refused)
 		warn("%ld of %ld sections are outside the range of the network", refused,
 			sections);
+	why[0] = signal_doubted(s.in);
+	why[1] = table_doubted(in);
+	for (int k = 0; k < 2; k++)
+		if (why[k]) {
+			table_comment(out, "doubtful", "%s", why[k]);
+			doubtful = 1;
+		}
 	table_done(out);
 	table_close(in);
 	signal_close(s.in);
@@ -187,4 +192,5 @@ void arrivals_apply(const char *network, const char *record)
 	free(cmd);
 	free(file.cmd);
 	network_free(net);
+	return doubtful;
 }

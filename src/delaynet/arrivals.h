@@ -8,9 +8,8 @@ extern struct opt arrivals_rows[]; /* for OPT_TABLE: the sections and the instru
 
 /* Dies where an option that the record needs is missing. */
 void arrivals_check(void);
-/* Writes a table of the pulses that the network finds in the sections of this record. */
-void arrivals_apply(const char *network, const char *record);
-/* 1 if a section did not suit the network. */
-int arrivals_refused(void);
+/* Writes a table of the pulses that the network finds in the sections of this record.  1
+ * if a section did not suit the network, or the record or the sections are doubtful. */
+int arrivals_apply(const char *network, const char *record);
 
 #endif

@@ -24,6 +24,7 @@ static const char *const models[] = { "sines", "pulses", NULL };
 
 static int task = TRAIN;
 static const char *network_file, *truth_file;
+static int doubtful;
 
 static const struct opt opts[] = {
 	OPT_HEADING("Task"),
@@ -101,6 +102,17 @@ static struct table_out *create_delays(const char *path, const char *cmd, int n)
 	return t;
 }
 
+/* The table says it too, since the exit status is lost in a pipe. */
+static void repeat_doubt(const struct signal_in *in, struct table_out *t)
+{
+	const char *why = signal_doubted(in);
+
+	if (!why)
+		return;
+	doubtful = 1;
+	table_comment(t, "doubtful", "%s", why);
+}
+
 static void put_delays(struct table_out *t, long i, const network_real *delay, int n)
 {
 	table_put(t, (double)i);
@@ -138,6 +150,7 @@ static void apply_network(const char *path)
 		die(EXIT_RUN, "%s: section %ld: want %d frames, got %zu", signal_name(in),
 			k, n, got);
 	stats_add("sections", (double)k);
+	repeat_doubt(in, t);
 	table_done(t);
 	signal_close(in);
 	free(frame);
@@ -201,12 +214,12 @@ int main(int argc, char **argv)
 		break;
 	case APPLY:
 		if (lessons.model == PULSES)
-			arrivals_apply(network_file, argv[i]);
+			doubtful = arrivals_apply(network_file, argv[i]);
 		else
 			apply_network(argv[i]);
 		break;
 	default:
 		write_data();
 	}
-	return shell_done(arrivals_refused() ? EXIT_NOCONV : 0);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -169,13 +169,12 @@ static void count_all(struct signal_in *in, struct found *out)
 	count_record(in, out, &par);
 }
 
-/* The table says it too, since the exit status is lost in a pipe. */
 static int is_doubted(const struct signal_in *in, struct found *out)
 {
 	const char *why = signal_doubted(in);
 
 	if (why)
-		table_comment(out->particles, "doubtful", "%s", why);
+		found_doubt(out, why);
 	return why != NULL;
 }
 

@@ -108,7 +108,7 @@ static int put_ready(struct early *e, struct found *out)
 	return any;
 }
 
-/* Says so, and so does the table. */
+/* Says so, and so do the tables. */
 static int is_doubtful(
 	const struct separate *s, struct found *out, const char *name, const char *kept)
 {
@@ -164,7 +164,7 @@ static int is_doubtful(
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
 	else
 		warn("%s: %s (misfit): the others are doubtful, too", name, why);
-	table_comment(out->particles, "doubtful", "%s", why);
+	found_doubt(out, why);
 	free(why);
 	return 1;
 }
@@ -173,13 +173,16 @@ static int is_doubtful(
  * too. */
 static int is_out_of_phase(struct found *out, const char *name)
 {
+	char *why;
+
 	if (2 * out->strange <= out->phases)
 		return 0;
 	warn("%s: %ld of %ld phases are of no material: is --phase, --excitation or "
 	     "--material wrong?",
 		name, out->strange, out->phases);
-	table_comment(out->particles, "doubtful", "%ld of %ld phases are of no material",
-		out->strange, out->phases);
+	why = xprintf("%ld of %ld phases are of no material", out->strange, out->phases);
+	found_doubt(out, why);
+	free(why);
 	return 1;
 }
 

@@ -244,15 +244,34 @@ void found_detectable(struct found *out, const struct calibration *c, int ratio)
 	}
 }
 
+enum { TABLES = 4 };
+
+static void tables_of(struct found *out, struct table_out *t[TABLES])
+{
+	t[0] = out->particles;
+	t[1] = out->section_rows;
+	t[2] = out->weights;
+	t[3] = out->limits;
+}
+
+void found_doubt(struct found *out, const char *why)
+{
+	struct table_out *t[TABLES];
+
+	tables_of(out, t);
+	for (int k = 0; k < TABLES; k++)
+		if (t[k])
+			table_comment(t[k], "doubtful", "%s", why);
+}
+
 void found_close(struct found *out)
 {
-	table_done(out->particles);
-	if (out->section_rows)
-		table_done(out->section_rows);
-	if (out->weights)
-		table_done(out->weights);
-	if (out->limits)
-		table_done(out->limits);
+	struct table_out *t[TABLES];
+
+	tables_of(out, t);
+	for (int k = 0; k < TABLES; k++)
+		if (t[k])
+			table_done(t[k]);
 	if (out->sources) {
 		draw_until(out, 0);
 		signal_done(out->sources);

@@ -34,6 +34,8 @@ void found_section(void *context, const struct separate_section *s);
 /* The table of what can be detected; NULL: nothing was learned. */
 /* ratio: see separate.h */
 void found_detectable(struct found *out, const struct calibration *c, int ratio);
+/* Every table says that it is doubtful, since the exit status is lost in a pipe. */
+void found_doubt(struct found *out, const char *why);
 void found_close(struct found *out);
 
 #endif

@@ -104,12 +104,16 @@ int whole_record(
 			"%d attenuation %.6g delay %.6g s share %.3g", k + 1,
 			source[k].attenuation, source[k].delta / (double)out->rate,
 			source[k].share);
-	if (!count)
+	if (!count) {
 		warn("%s: nothing in common of both channels", signal_name(in));
+		found_doubt(out, "nothing in common of both channels");
+	}
 	doubtful = mixture_is_far(m);
-	if (doubtful)
+	if (doubtful) {
 		warn("%s: delays beyond 16 samples: these sources are doubtful",
 			signal_name(in));
+		found_doubt(out, "delays beyond 16 samples");
+	}
 	if (out->section_rows)
 		put_record(out, m, count);
 	if (out->weights)

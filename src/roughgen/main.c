@@ -173,14 +173,21 @@ int main(int argc, char **argv)
 {
 	const char *file = file_of(argc, argv, opt_parse(&prog, argc, argv));
 	struct record r = { 0 };
+	int status = EXIT_SUCCESS;
 
 	check_options(file != NULL);
 	if (file) {
 		struct measured *surfaces = measured_open(file);
+		const char *why;
 		double had;
 
 		while (measured_next(surfaces, &r, &had))
 			finish(&r, had, measured_more(surfaces));
+		why = measured_doubted(surfaces);
+		if (why && table)
+			table_comment(table, "doubtful", "%s", why);
+		if (why)
+			status = EXIT_NOCONV;
 		measured_close(surfaces);
 	} else {
 		struct generated *surfaces = generated_open((int)threads);
@@ -194,5 +201,5 @@ int main(int argc, char **argv)
 		fields_done(out);
 	if (table)
 		table_done(table);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(status);
 }

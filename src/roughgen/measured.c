@@ -64,6 +64,11 @@ int measured_more(struct measured *m)
 	return fields_more(m->in);
 }
 
+const char *measured_doubted(struct measured *m)
+{
+	return fields_doubted(m->in);
+}
+
 void measured_close(struct measured *m)
 {
 	record_free(&m->read);

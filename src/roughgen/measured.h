@@ -21,6 +21,9 @@ struct measured *measured_open(const char *path);
  * end; dies where there was no record at all. */
 int measured_next(struct measured *m, struct record *r, double *crown);
 int measured_more(struct measured *m); /* 1 if a record follows, or is promised */
+/* Why the records are doubtful by their own account, with a warning; NULL: they are not.
+ */
+const char *measured_doubted(struct measured *m);
 void measured_close(struct measured *m);
 
 #endif

@@ -11,8 +11,11 @@
 enum { CELLS = HISTOGRAM_CELLS, ROUNDS = 5 };
 
 /* Range of the histogram: a - 1/a from -ODDS to ODDS; delays from -reach to reach
- * samples, the first of these that leaves little beyond it. */
-static const double ODDS = 2.5, REACH[] = { 4, 16 }, BEYOND = 0.2;
+ * samples, the first of these that leaves little beyond it.  Of 72 mixtures of one to
+ * three voices with delays up to 15 samples, and of 72 with one of 19 to 60, BEYOND of
+ * 0.1 and 0.2 doubts 4 and 2 of the former and misses 2 and 9 of the latter.  PLAIN of 4,
+ * with 0.2, doubts 33 and misses 2: voices have little at frequencies so low. */
+static const double ODDS = 2.5, REACH[] = { 4, 16 }, BEYOND = 0.1, PLAIN = 2;
 enum { REACHES = sizeof REACH / sizeof *REACH };
 /* Lower peaks are noise, unless the number of sources is given. */
 static const double PEAK_SHARE = 0.1;
@@ -150,13 +153,13 @@ const double *mixture_histogram(const struct mixture *m)
 	return m->histogram.weight;
 }
 
-/* Counts the present window; returns, of the frequencies at which even delays of four
+/* Counts the present window; returns, of the frequencies at which even delays of PLAIN
  * times the reach are plain, the weight in all and beyond the reach. */
 static void count_window(struct mixture *m, double *all, double *beyond)
 {
 	for (size_t k = 1; k < m->bins && frequency(m, k) * m->reach < M_PI; k++) {
 		double p1 = cabs(m->y1[k]), p2 = cabs(m->y2[k]), a, delta, i, j;
-		int plain = frequency(m, k) * 4 * m->reach < M_PI;
+		int plain = frequency(m, k) * PLAIN * m->reach < M_PI;
 
 		if (p1 * p2 == 0)
 			continue;
