@@ -153,9 +153,7 @@ void outlook_check(int bare)
 	static const char *const of_bank[] = { "weights", "events", "covariate",
 		"fleet" };
 
-	for (int k = 1; k < levels.n; k++)
-		if (levels.v[k] <= levels.v[k - 1])
-			die(EXIT_USAGE, "--levels: levels must be ascending");
+	levels_check(&levels);
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
 			die(EXIT_USAGE, "--alarm: times must be descending");
