@@ -56,7 +56,6 @@ void observed_add(struct observed *o, struct moment m, double value)
 	o->last = m;
 	if (o->grey.n == 0 || dt > 0)
 		grey_append(&o->grey, value, dt);
-	o->n++;
 }
 
 double observed_gap(const struct observed *o)
