@@ -528,7 +528,7 @@ static enum num_status draw_lives(const struct outlook *o, int n, double *life)
 	if (model == LITERAL)
 		return adaptive_lives(
 			o->filter, threshold, now->direction, LITERAL_STEPS, life);
-	if (o->bank && bank_ready(o->bank))
+	if (bank_ready(o->bank))
 		return bank_draw(o->bank, chances, now->clock, threshold, life);
 	if (o->bank || now->grey.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
@@ -566,18 +566,15 @@ static void put_failure(struct outlook *o, double *cell)
 
 static void put_factors(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->bank;
-
 	for (int k = 0; k < covariates_count(); k++)
-		cell[k] = b && bank_ready(b) ? bank_factor(b, k) : NAN;
+		cell[k] = bank_ready(o->bank) ? bank_factor(o->bank, k) : NAN;
 }
 
 static void put_weights(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->bank;
-
 	for (int k = 0; k < WEIGHED; k++)
-		cell[k] = b && bank_ready(b) ? bank_weight(b, weighed[k].family) : NAN;
+		cell[k] = bank_ready(o->bank) ? bank_weight(o->bank, weighed[k].family)
+					      : NAN;
 }
 
 static int life_cells(void)
@@ -644,9 +641,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
  * bad or the threshold had been passed before, and if the trends recede. */
 static int check_direction(const struct outlook *o)
 {
-	const struct bank *b = o->bank;
-
-	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
+	if (bank_ready(o->bank) && !o->now.failed && bank_recedes(o->bank)) {
 		warn("%sthe values recede from the threshold, and no life ends: "
 		     "--direction %s is for the other way",
 			o->prefix, directions[o->now.direction > 0 ? DOWN : UP]);

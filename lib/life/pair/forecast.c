@@ -179,7 +179,7 @@ const struct observed *forecast_observed(const struct forecast *f)
 
 const struct bank *forecast_bank(const struct forecast *f)
 {
-	return f->bank && bank_ready(f->bank) ? f->bank : NULL;
+	return bank_ready(f->bank) ? f->bank : NULL;
 }
 
 int forecast_contradicts(const struct forecast *f)
