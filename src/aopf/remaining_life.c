@@ -556,14 +556,6 @@ static void foresee(struct outlook *o, double *cell)
 	free(life);
 }
 
-/* Cells of a unit that has failed. */
-static void put_failure(struct outlook *o, double *cell)
-{
-	double gone = 0;
-
-	put_draws(o, &gone, 1, INFINITY, cell);
-}
-
 static void put_factors(const struct outlook *o, double *cell)
 {
 	for (int k = 0; k < covariates_count(); k++)
@@ -627,7 +619,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
 	if (now->failed && believed)
-		put_failure(o, cell);
+		put_draws(o, (double[]){ 0 }, 1, INFINITY, cell);
 	else if (now->started && wanted)
 		foresee(o, cell);
 	now->lives += now->started && !now->failed && wanted;
