@@ -171,11 +171,13 @@ static void close_sink(struct sink *out)
 	free(out->name);
 }
 
-/* The table says it too, since the exit status is lost in a pipe. */
-static void doubt(const struct sink *out, const char *why)
+/* 1 where there is a reason.  The table says it too, since the exit status is lost in a
+ * pipe. */
+static int doubt(const struct sink *out, const char *why)
 {
-	if (out->table)
+	if (why && out->table)
 		table_comment(out->table, "doubtful", "%s", why);
+	return why != NULL;
 }
 
 /* --- rows in ------------------------------------------------------------------------ */
@@ -305,7 +307,6 @@ int main(int argc, char **argv)
 	struct pool *pool = NULL;
 	struct series *in;
 	struct sink out;
-	const char *why;
 	char *options, *in_units;
 
 	outlook_check(bare);
@@ -325,17 +326,10 @@ int main(int argc, char **argv)
 	out = open_sink(in);
 	read_rows(in, units, pool, &out);
 	alarm = units_alarm(units);
-	doubtful = units_report(units);
-	if (doubtful)
-		doubt(&out, "lives or events, as a warning says");
-	why = table_doubted(series_table(in));
-	if (why)
-		doubt(&out, why);
-	doubtful |= why != NULL;
-	why = outlook_doubt();
-	if (why)
-		doubt(&out, why);
-	doubtful |= why != NULL;
+	doubtful = doubt(
+		&out, units_report(units) ? "lives or events, as a warning says" : NULL);
+	doubtful |= doubt(&out, table_doubted(series_table(in)));
+	doubtful |= doubt(&out, outlook_doubt());
 	units_free(units);
 	pool_free(pool);
 	outlook_close();

@@ -153,9 +153,7 @@ void outlook_check(int bare)
 	static const char *const of_bank[] = { "weights", "events", "covariate",
 		"fleet" };
 
-	for (int k = 1; k < levels.n; k++)
-		if (levels.v[k] <= levels.v[k - 1])
-			die(EXIT_USAGE, "--levels: levels must be ascending");
+	levels_check(&levels);
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
 			die(EXIT_USAGE, "--alarm: times must be descending");
@@ -537,7 +535,7 @@ static enum num_status draw_lives(const struct outlook *o, int n, double *life)
 	if (model == LITERAL)
 		return adaptive_lives(
 			o->filter, threshold, now->direction, LITERAL_STEPS, life);
-	if (o->bank && bank_ready(o->bank))
+	if (bank_ready(o->bank))
 		return bank_draw(o->bank, chances, now->clock, threshold, life);
 	if (o->bank || now->grey.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
@@ -565,28 +563,17 @@ static void foresee(struct outlook *o, double *cell)
 	free(life);
 }
 
-/* Cells of a unit that has failed. */
-static void put_failure(struct outlook *o, double *cell)
-{
-	double gone = 0;
-
-	put_draws(o, &gone, 1, INFINITY, cell);
-}
-
 static void put_factors(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->bank;
-
 	for (int k = 0; k < covariates_count(); k++)
-		cell[k] = b && bank_ready(b) ? bank_factor(b, k) : NAN;
+		cell[k] = bank_ready(o->bank) ? bank_factor(o->bank, k) : NAN;
 }
 
 static void put_weights(const struct outlook *o, double *cell)
 {
-	const struct bank *b = o->bank;
-
 	for (int k = 0; k < WEIGHED; k++)
-		cell[k] = b && bank_ready(b) ? bank_weight(b, weighed[k].family) : NAN;
+		cell[k] = bank_ready(o->bank) ? bank_weight(o->bank, weighed[k].family)
+					      : NAN;
 }
 
 static int life_cells(void)
@@ -639,7 +626,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
 	if (now->failed && believed)
-		put_failure(o, cell);
+		put_draws(o, (double[]){ 0 }, 1, INFINITY, cell);
 	else if (now->started && wanted)
 		foresee(o, cell);
 	now->lives += now->started && !now->failed && wanted;
@@ -653,9 +640,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
  * bad or the threshold had been passed before, and if the trends recede. */
 static int check_direction(const struct outlook *o)
 {
-	const struct bank *b = o->bank;
-
-	if (b && bank_ready(b) && !o->now.failed && bank_recedes(b)) {
+	if (bank_ready(o->bank) && !o->now.failed && bank_recedes(o->bank)) {
 		warn("%sthe values recede from the threshold, and no life ends: "
 		     "--direction %s is for the other way",
 			o->prefix, directions[o->now.direction > 0 ? DOWN : UP]);

@@ -14,12 +14,16 @@
 
 enum { NAME = 64, FILTERED = 5 };
 
+struct progress {
+	int64_t rows;
+	double last, value; /* time and y of the last row */
+	double clock;       /* of the last row read, which is ahead in a block */
+};
+
 struct machine {
 	char *name;
 	int number; /* in order of appearance, over all runs */
-	long rows;
-	double last, value; /* time and y of the last row */
-	double clock;       /* of the last row read, which is ahead in a block */
+	struct progress now;
 	int resumed;
 	uint64_t sequence;       /* of the last saved state */
 	struct adaptive *filter; /* NULL if bare */
@@ -47,8 +51,7 @@ struct head {
 struct place {
 	uint64_t sequence, check;
 	char name[NAME];
-	int64_t rows;
-	double last, value, clock;
+	struct progress now;
 };
 
 static const char magic[16] = "aopf state 11\n";
@@ -67,7 +70,7 @@ static struct machine *add_unit(struct units *units, int number, const char *nam
 
 	u->name = xstrdup(name);
 	u->number = number;
-	u->clock = -INFINITY;
+	u->now.clock = -INFINITY;
 	if (!units->bare)
 		u->filter = filtering_new(number);
 	if (!isnan(outlook_threshold))
@@ -89,7 +92,7 @@ void units_free(struct units *units)
 	for (int i = 0; i < units->n; i++) {
 		struct machine *u = units->unit[i];
 
-		stats_add("rows", (double)u->rows);
+		stats_add("rows", (double)u->now.rows);
 		if (u->filter)
 			filtering_count(u->filter);
 		if (u->outlook)
@@ -166,21 +169,21 @@ int unit_takes(
 	const char *file = table_name(from), *colon = *u->name ? ": " : "";
 	long line = table_line(from);
 
-	if (u->resumed && in->t <= u->last) {
-		if (in->t == u->last && in->y != u->value &&
-			!(isnan(in->y) && isnan(u->value)))
+	if (u->resumed && in->t <= u->now.last) {
+		if (in->t == u->now.last && in->y != u->now.value &&
+			!(isnan(in->y) && isnan(u->now.value)))
 			die(EXIT_RUN,
 				"%s: line %ld: %s%sy is %g, but was %g when the state was "
 				"saved: another series",
-				file, line, u->name, colon, in->y, u->value);
+				file, line, u->name, colon, in->y, u->now.value);
 		return 0;
 	}
-	if (!(in->clock >= u->clock))
+	if (!(in->clock >= u->now.clock))
 		die(EXIT_RUN,
 			"%s: line %ld: %s%soperating time %g comes after %g: it must not "
 			"decrease",
-			file, line, u->name, colon, in->clock, u->clock);
-	u->clock = in->clock;
+			file, line, u->name, colon, in->clock, u->now.clock);
+	u->now.clock = in->clock;
 	return 1;
 }
 
@@ -193,9 +196,9 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 {
 	struct adaptive_row row;
 
-	u->rows++;
-	u->last = in->t;
-	u->value = in->y;
+	u->now.rows++;
+	u->now.last = in->t;
+	u->now.value = in->y;
 	if (u->filter) {
 		adaptive_step(u->filter, in->t, in->y, &row);
 		*cell++ = row.grey;
@@ -294,10 +297,7 @@ static int resume_unit(struct units *units, FILE *f, int number)
 	u = add_unit(units, number, place[newer].name);
 	u->resumed = 1;
 	u->sequence = place[newer].sequence;
-	u->rows = (long)place[newer].rows;
-	u->last = place[newer].last;
-	u->value = place[newer].value;
-	u->clock = place[newer].clock;
+	u->now = place[newer].now;
 	s.at = units->place + sizeof place[0];
 	pass(u, &s);
 	return 1;
@@ -367,11 +367,7 @@ void units_keep(struct units *units, const char *path, const char *options)
 
 void unit_save(struct units *units, struct machine *u)
 {
-	struct place p = { .sequence = ++u->sequence,
-		.rows = u->rows,
-		.last = u->last,
-		.value = u->value,
-		.clock = u->clock };
+	struct place p = { .sequence = ++u->sequence, .now = u->now };
 	struct state s = { .at = units->place + sizeof p };
 
 	if (!units->file)

@@ -1,10 +1,11 @@
 /* units.h - the units of a stream and what is kept of each between its rows; on disk too
  *
- *	struct units *units = units_new(filtered);
- *	units_load(units, path);
+ *	struct units *units = units_new(bare);
+ *	units_resume(units, path, options);
+ *	units_keep(units, path, options);
  *	struct machine *u = units_find(units, series_unit(in), series_unit_name(in));
  *	unit_step(u, &row, cell);
- *	units_save(units, u);
+ *	unit_save(units, u);
  *
  * The file of a saved state has two places for each unit, which are written in turn, with
  * a checksum: whatever stops the program, one of them is whole.
@@ -17,7 +18,7 @@
 struct machine;
 struct units;
 
-/* bare: without filters.  cells: of a row, see unit_step(). */
+/* bare: without filters. */
 struct units *units_new(int bare);
 void units_free(struct units *units); /* counts the work done, too */
 /* The unit with this number in the input, a new one where it is not known yet. */

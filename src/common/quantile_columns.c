@@ -1,6 +1,13 @@
 #include "quantile_columns.h"
 #include "cli/msg.h"
 
+void levels_check(const struct opt_list *levels)
+{
+	for (int i = 1; i < levels->n; i++)
+		if (!(levels->v[i] > levels->v[i - 1]))
+			die(EXIT_USAGE, "--levels: levels must be ascending");
+}
+
 char *levels_columns(
 	const char *before, const char *prefix, const struct opt_list *levels)
 {

@@ -4,6 +4,9 @@
 
 #include "cli/opt.h"
 
+/* Dies where the levels of --levels do not ascend. */
+void levels_check(const struct opt_list *levels);
+
 /* The given names and one for each level, separated by blanks; the caller frees. */
 char *levels_columns(
 	const char *before, const char *prefix, const struct opt_list *levels);

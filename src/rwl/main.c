@@ -3,6 +3,7 @@
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/covariates.h"
+#include "common/quantile_columns.h"
 #include "fragments.h"
 #include "life/trend/passage.h"
 #include "life_table.h"
@@ -95,9 +96,7 @@ static void settle(void)
 		if (opt_given(of_state[i]) && calibrations.n == 0 && new)
 			die(EXIT_USAGE, "--%s requires a state: --new reads none",
 				of_state[i]);
-	for (int i = 1; i < levels.n; i++)
-		if (!(levels.v[i] > levels.v[i - 1]))
-			die(EXIT_USAGE, "--levels: levels must be ascending");
+	levels_check(&levels);
 	for (int i = 0; i < wear_files.n; i++)
 		if (!new && (!state_file || !strcmp(state_file, "-")) &&
 			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))

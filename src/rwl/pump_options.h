@@ -9,7 +9,7 @@
 /* Values of the options; nan if not given. */
 extern struct pump {
 	struct pair pair;
-	double fragment_area, transition; /* see life/partition.h; NAN: not known */
+	double fragment_area, transition; /* see life/prior/partition.h; NAN: not known */
 	double critical_size, critical_probability; /* failure by large particles */
 	int per_step;                               /* their share in one step */
 	struct opt_list radii, ports;

@@ -133,7 +133,7 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 		return NUM_OK;
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
-	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
+	if (run_in || (f->par.skip > 0 && f->observed.grey.n == 0))
 		observed_begin(&f->observed, m);
 	if (!run_in)
 		observed_add(&f->observed, m, value);
@@ -179,7 +179,7 @@ const struct observed *forecast_observed(const struct forecast *f)
 
 const struct bank *forecast_bank(const struct forecast *f)
 {
-	return f->bank && bank_ready(f->bank) ? f->bank : NULL;
+	return bank_ready(f->bank) ? f->bank : NULL;
 }
 
 int forecast_contradicts(const struct forecast *f)

@@ -56,7 +56,6 @@ void observed_add(struct observed *o, struct moment m, double value)
 	o->last = m;
 	if (o->grey.n == 0 || dt > 0)
 		grey_append(&o->grey, value, dt);
-	o->n++;
 }
 
 double observed_gap(const struct observed *o)
@@ -145,14 +144,18 @@ static double squares_about(const struct observed *o, int k, double *changes)
 int observed_falls(const struct observed *o)
 {
 	int n = o->n_kept;
-	double changes, most = o->kept[n > 0 ? n - 1 : 0].gap - o->kept[0].gap,
-			exact = ROUNDED * ROUNDED * n * most * most;
+	double changes, most, exact, about_one;
 
-	for (int k = 2; n >= FEWEST && k + 1 < n; k++) {
+	if (n < FEWEST)
+		return 0;
+	most = o->kept[n - 1].gap - o->kept[0].gap;
+	exact = ROUNDED * ROUNDED * n * most * most;
+	about_one = squares_about(o, 0, &changes);
+	for (int k = 2; k + 1 < n; k++) {
 		double left = squares_about(o, k, &changes) + exact;
 
 		if (changes + 2 * exact > WHITE * left &&
-			(n - 3) * (squares_about(o, 0, &most) - left) > FALL * left)
+			(n - 3) * (about_one - left) > FALL * left)
 			return 1;
 	}
 	return 0;

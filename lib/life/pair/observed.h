@@ -30,7 +30,6 @@ enum { OBSERVED_KEPT = 17 };
 
 /* All 0 at first. */
 struct observed {
-	long n; /* observations */
 	struct moment first, before,
 		last; /* of the rates; different times but at first */
 	/* Observations since the start of the rates, one of every so many. */

@@ -288,18 +288,10 @@ static void begin(struct adaptive *a, double t, double y, struct adaptive_row *r
 	put_state(a, row);
 }
 
-/* Order of the model of the particles. */
-static int order_in_use(const struct adaptive *a)
-{
-	int chosen = order_chosen(a->order), depth = filter_depth(a->filter);
-
-	return chosen < depth ? chosen : depth;
-}
-
 static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	double gap = t - a->time, noise = observation_noise(a), process;
-	int order = order_in_use(a);
+	int order = order_chosen(a->order); /* the particles remember all its rows */
 
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
@@ -372,7 +364,7 @@ static size_t end_paths(const struct filter *f, size_t n, double limit, int dire
 enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life)
 {
-	int order = order_in_use(a);
+	int order = order_chosen(a->order);
 	double limit = threshold / a->scale, noise = observation_noise(a),
 	       gap = a->mean_gap, process = process_noise(a, noise, gap);
 	size_t n = a->par.filter.particles, left;

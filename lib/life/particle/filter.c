@@ -81,11 +81,6 @@ void filter_pass(struct filter *f, struct state *s)
 	state_move(s, &f->at, sizeof f->at);
 }
 
-int filter_depth(const struct filter *f)
-{
-	return f->at.filled;
-}
-
 static size_t place_of(const struct filter *f, int lag)
 {
 	return (size_t)((f->at.newest - lag + f->par.depth) % f->par.depth);

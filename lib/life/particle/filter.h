@@ -44,9 +44,6 @@ void filter_pass(struct filter *f, struct state *s);
  * within +- spread of them, and equal weights. */
 void filter_start(struct filter *f, const double *past, int count, double spread);
 
-/* States remembered so far, <= depth. */
-int filter_depth(const struct filter *f);
-
 /* The states x[n] of step k - lag that have descendants, and the index among them of the
  * ancestor of each state of the next step (lag 0: of each particle), which ascend without
  * gaps from 0. */

@@ -28,7 +28,8 @@ struct class
 	struct realisations *reader;
 	long last_realisation, last_step; /* of the row before; -1: none */
 	long lowest, highest;             /* first and last realisation */
-	/* Over realisations: volume, of the steps that count for the rate. */
+	/* Over realisations, volume.n of them: volume of the steps that count for the
+	 * rate. */
 	struct running volume;
 	struct regression steps; /* of the volume on the number of steps */
 	struct running cell;     /* over realisations and steps: volume */
@@ -38,7 +39,7 @@ struct class
 	long groups, first_group;
 	double times[GROUPS]; /* how often each was drawn for the present replicate */
 	/* Of a closed class. */
-	double realisations, error, skewness; /* error: relative, of the mean */
+	double error, skewness; /* error: relative, of the mean */
 	struct partition_wear all, now;
 };
 
@@ -228,19 +229,18 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	}
 	if (!(c->steps.mean_x > 0))
 		return PARTITION_EMPTY;
-	c->realisations = c->volume.n;
 	c->all.mean = c->volume.mean / c->steps.mean_x;
 	/* Of volume - mean * steps over the realisations, whose mean is 0. */
 	scatter = c->volume.square - 2 * c->all.mean * c->steps.xy +
 		  c->all.mean * c->all.mean * c->steps.xx;
-	if (c->realisations > 1)
-		c->all.life_variance = fmax(scatter, 0) / (c->realisations - 1) /
+	if (c->volume.n > 1)
+		c->all.life_variance = fmax(scatter, 0) / (c->volume.n - 1) /
 				       (c->steps.mean_x * c->steps.mean_x);
 	c->all.step_variance = c->cell.n > 1 ? running_variance(&c->cell) : 0;
 	if (c->all.mean > 0)
-		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
+		c->error = sqrt(c->all.life_variance / c->volume.n) / c->all.mean;
 	c->skewness = fmax(0, running_skewness(&c->volume));
-	c->groups = (long)fmin(c->realisations, GROUPS);
+	c->groups = (long)fmin(c->volume.n, GROUPS);
 	c->first_group = c->sparse ? c->lowest % GROUPS : 0;
 	return PARTITION_OK;
 }
@@ -332,7 +332,7 @@ double partition_count(const struct partition *p, int class, double *mean, doubl
 {
 	*mean = p->class[class].all.mean;
 	*error = p->class[class].error;
-	return p->class[class].realisations;
+	return p->class[class].volume.n;
 }
 
 double partition_power_mean(double p0, double y0, double p1, double y1)
@@ -424,7 +424,7 @@ static const double least_draw = 0.01;
 static double draw_mean(const struct class *c, gsl_rng *rng)
 {
 	const double tail = 4.7, square = 1.2;
-	double k = c->realisations, t, more;
+	double k = c->volume.n, t, more;
 
 	if (!(c->error > 0))
 		return 1;
@@ -470,8 +470,8 @@ static struct shed shed_in(const struct class *c, long step)
 	for (int i = 0; i < GROUPS && step < c->shed_steps; i++) {
 		const struct shed *s = &c->shed[step * GROUPS + i];
 
-		sum.count += c->times[i] / c->realisations * s->count;
-		sum.large += c->times[i] / c->realisations * s->large;
+		sum.count += c->times[i] / c->volume.n * s->count;
+		sum.large += c->times[i] / c->volume.n * s->large;
 	}
 	return sum;
 }

@@ -96,7 +96,7 @@ void bank_free(struct bank *b)
 
 int bank_ready(const struct bank *b)
 {
-	return b->rows >= BANK_START;
+	return b && b->rows >= BANK_START;
 }
 
 struct bank_counts bank_counts(const struct bank *b)

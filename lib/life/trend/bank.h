@@ -135,7 +135,7 @@ double bank_factor(const struct bank *b, int k);
 /* Adds an observation; t must increase; y NAN: none.  Observations before the first one
  * on the good side of the threshold are ignored. */
 void bank_add(struct bank *b, double t, double y);
-int bank_ready(const struct bank *b);
+int bank_ready(const struct bank *b); /* 0 for NULL, too */
 
 /* A known event before the next row. */
 enum bank_event {

@@ -1,5 +1,6 @@
-/* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c) and
- * the covariates (loads.c) and the draws from it (passage.c)
+/* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c), the
+ * states of its trends (states.c), the covariates (loads.c) and the draws from it
+ * (passage.c)
  */
 #ifndef LIFE_BANK_STATE_H
 #define LIFE_BANK_STATE_H
@@ -128,13 +129,20 @@ double chance_of_jump(const struct bank *b);
  * bank_free(); NULL: no memory. */
 struct bank *bank_accepting(const struct bank *b);
 
-/* --- states, loads.c ---
+/* --- states, states.c ---
  * x[n] and its covariance [n][n] in units of the noise variance; x[0] is h, and the
  * others are the rates. */
 
 /* The state of a trend, n = 2 + n_loads; behind it priors_of(). */
 double *state_of(const struct bank *b, const struct trend *tr);
 size_t size_of_state(const struct bank_par *par);
+/* The precisions [n_loads] that the priors of the w of a trend have at present. */
+static inline double *priors_of(const struct bank *b, const struct trend *tr)
+{
+	int n = 2 + b->par.n_loads;
+
+	return state_of(b, tr) + n + n * n;
+}
 /* h and the rate of a trend at some loads; here and below, f[n - 1] begins with 1. */
 void line_at(const struct bank *b, const struct trend *tr, const double *f, double *line);
 /* Advances by the length of the way along the rates at these loads, and discounts the
@@ -158,13 +166,6 @@ void future_loads(
 void face_loads(struct bank *b, const struct row *r);
 /* Sets the bends to the effects learnt so far. */
 void bend_loads(struct bank *b);
-/* The precisions [n_loads] that the priors of the w of a trend have at present. */
-static inline double *priors_of(const struct bank *b, const struct trend *tr)
-{
-	int n = 2 + b->par.n_loads;
-
-	return state_of(b, tr) + n + n * n;
-}
 
 /* The way along the present rate in a step, which is longer where the rate grows. */
 double advance_of(const struct bank *b, const struct trend *tr, double step);
