@@ -1,4 +1,4 @@
-#include "reasons.h"
+#include "io/reasons.h"
 #include "cli/msg.h"
 #include "io/input.h"
 #include <stdlib.h>

@@ -6,6 +6,7 @@
 #include "common/time_unit.h"
 #include "filter_options.h"
 #include "io/quantities.h"
+#include "io/reasons.h"
 #include "io/series.h"
 #include "life/grey/grey.h"
 #include "life/prior/fleet.h"
@@ -180,26 +181,24 @@ void outlook_check(int bare)
 			opt_any_given(filtering_rows));
 }
 
-/* Why the table of the fleet or of events is doubtful, by its own account. */
-static char *others_doubt;
+/* Of the tables of the fleet and of events, by their own account, and of covariates. */
+static struct reasons doubts;
 
 static void doubt_of(struct table_in *t)
 {
 	const char *why = table_doubted(t);
 
-	if (!why)
-		return;
-	if (others_doubt)
-		others_doubt = xappend(others_doubt, "; %s", why);
-	else
-		others_doubt = xstrdup(why);
+	if (why)
+		reasons_add(&doubts, why);
 }
 
 const char *outlook_doubt(void)
 {
 	const char *far = isnan(outlook_threshold) ? NULL : covariates_doubt();
 
-	return far ? far : others_doubt;
+	if (far)
+		reasons_add(&doubts, far);
+	return reasons_text(&doubts);
 }
 
 /* Ages are operating times if the table of the fleet has the column of the clock. */
@@ -335,7 +334,7 @@ void outlook_close(void)
 	for (int i = 0; i < n_events; i++)
 		free(events[i].unit);
 	free(events);
-	free(others_doubt);
+	reasons_free(&doubts);
 	for (int i = 0; i < n_fleet_units; i++)
 		free(fleet_unit[i]);
 	free(fleet_unit);

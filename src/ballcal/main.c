@@ -7,6 +7,7 @@
 #include "count/detection.h"
 #include "count/line.h"
 #include "io/quantities.h"
+#include "io/reasons.h"
 #include "io/tables.h"
 #include "num/room.h"
 #include "num/select.h"
@@ -57,11 +58,11 @@ struct pulse {
 struct pulses {
 	struct pulse *pulse;
 	size_t n, room;
-	double speed;     /* sum of velocities */
-	int signs[2];     /* tables of positive and of negative amplitudes */
-	int equal;        /* tables of pulses that do not differ */
-	char *doubt;      /* of a table, by its own account; NULL: of none */
-	double outlier_p; /* the least of the tables; nan: none has three pulses */
+	double speed;          /* sum of velocities */
+	int signs[2];          /* tables of positive and of negative amplitudes */
+	int equal;             /* tables of pulses that do not differ */
+	struct reasons doubts; /* of tables, by their own account */
+	double outlier_p;      /* the least of the tables; nan: none has three pulses */
 	/* Squared standard errors of the amplitudes of pulses that stand alone, whose
 	 * fit is the matched filter: their sum and number. */
 	double squares, alone;
@@ -192,10 +193,8 @@ static void read_balls(struct pulses *p, const char *text, int table)
 	p->signs[sign < 0]++;
 	compare(p, before, table_name(t));
 	why = table_doubted(t);
-	if (why && p->doubt)
-		p->doubt = xappend(p->doubt, "; %s", why);
-	else if (why)
-		p->doubt = xstrdup(why);
+	if (why)
+		reasons_add(&p->doubts, why);
 	table_close(t);
 	free(path);
 }
@@ -285,7 +284,8 @@ int main(int argc, char **argv)
 	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, lack;
 	struct doubt doubt = { NAN, NAN, NAN };
 	int fitted, doubtful;
-	char unit[40]; /* of amplitude over velocity and diameter to the exponent */
+	const char *why; /* a table is doubtful, by its own account */
+	char unit[40];   /* of amplitude over velocity and diameter to the exponent */
 
 	opt_parse(&prog, argc, argv);
 	if (!balls.n)
@@ -329,9 +329,9 @@ int main(int argc, char **argv)
 	}
 	if (balls.n >= 2)
 		allow_shared(&p, &doubt);
+	why = reasons_text(&p.doubts);
 	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY ||
-		   p.outlier_p < UNLIKELY || p.equal || p.doubt ||
-		   (p.signs[0] && p.signs[1]);
+		   p.outlier_p < UNLIKELY || p.equal || why || (p.signs[0] && p.signs[1]);
 	if (p.signs[0] && p.signs[1])
 		warn("amplitudes are positive in %d tables and negative in %d: balls of several "
 		     "materials have no constant in common",
@@ -351,8 +351,8 @@ int main(int argc, char **argv)
 		"quantity value low high unit");
 	/* The exit status is lost in a pipe. */
 	if (doubtful)
-		table_comment(t, "doubtful", "%s",
-			p.doubt ? p.doubt : "the balls, as a warning says");
+		table_comment(
+			t, "doubtful", "%s", why ? why : "the balls, as a warning says");
 	put(t, "pulses", "1", (double)p.n, NAN, NAN);
 	put(t, "sizes", "1", sizes, NAN, NAN);
 	put_log(t, "calibration", unit, ln_k, doubt.constant);
@@ -375,6 +375,6 @@ int main(int argc, char **argv)
 	free(x);
 	free(y);
 	free(p.pulse);
-	free(p.doubt);
+	reasons_free(&p.doubts);
 	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

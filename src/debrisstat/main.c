@@ -7,6 +7,7 @@
 #include "common/simulated.h"
 #include "io/input.h"
 #include "io/quantities.h"
+#include "io/reasons.h"
 #include "io/tables.h"
 #include "stats/estimates.h"
 #include <limits.h>
@@ -183,13 +184,15 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 	}
 }
 
-static char *doubted; /* why the input is doubtful, NULL: it is not */
+static struct reasons doubts; /* of the input */
 
 /* Ends the output, which is as doubtful as the input. */
 static void finish(struct table_out *t)
 {
-	if (doubted)
-		table_comment(t, "doubtful", "%s", doubted);
+	const char *why = reasons_text(&doubts);
+
+	if (why)
+		table_comment(t, "doubtful", "%s", why);
 	table_done(t);
 }
 
@@ -280,7 +283,7 @@ static void read_particles(
 		table_close(summary.table);
 	why = table_doubted(t);
 	if (why)
-		doubted = doubted ? xappend(doubted, "; %s", why) : xstrdup(why);
+		reasons_add(&doubts, why);
 	*cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 }
@@ -567,6 +570,7 @@ int main(int argc, char **argv)
 	struct study study;
 	struct ensemble *e;
 	char *cmd;
+	int doubtful;
 
 	check_options();
 	e = new_ensemble();
@@ -586,5 +590,7 @@ int main(int argc, char **argv)
 	ensemble_free(e);
 	free(size_count);
 	free(cmd);
-	return shell_done(doubted ? EXIT_NOCONV : EXIT_SUCCESS);
+	doubtful = reasons_text(&doubts) != NULL;
+	reasons_free(&doubts);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }
