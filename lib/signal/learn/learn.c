@@ -418,6 +418,8 @@ static double try_scatter(struct examples *ex, struct examples *rough, unsigned 
 	struct joint_scene *scene)
 {
 	struct joint_deviation own[JOINT_OWN][EXAMPLES_MAX * EXAMPLE_PULSES];
+	_Static_assert(sizeof own[0] <= JOINT_SCATTER_MAX * sizeof own[0][0],
+		"joint_scatter() takes all pulses of the examples");
 	struct joint_result result;
 	double explained, left, balance = 0;
 	size_t n = 0, m;
