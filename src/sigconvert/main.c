@@ -120,6 +120,8 @@ int main(int argc, char **argv)
 	struct channels *table = NULL;
 	struct signal_format format;
 	double *x, frames = 0;
+	const char *doubt;
+	int doubtful;
 	size_t n;
 
 	check_options();
@@ -146,18 +148,22 @@ int main(int argc, char **argv)
 			clipped += recording_write(out, x, n);
 		frames += (double)n;
 	}
-	recording_close(in);
 	if (from == FROM_RAW)
 		check_type(&magnitudes);
+	doubt = recording_doubt(in);
+	doubtful = doubt && !(out && recording_state(out, doubt));
+	if (doubtful)
+		warn("%s: doubtful by its own account: %s", recording_name(in), doubt);
 	if (table)
-		channels_done(table);
+		channels_done(table, doubt);
 	else
 		recording_done(out);
+	recording_close(in);
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
 		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
-	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(clipped > 0 || doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -39,6 +39,7 @@ struct recording_out {
 	int failed; /* a write failed, which libsndfile does not always report */
 	int channels;
 	double frame, rate;
+	char *doubt; /* that of the header, or NULL */
 };
 
 /* ---- sound files ---- */
@@ -252,11 +253,9 @@ static enum recording_from recognise(struct input *in)
 
 /* ---- text that sigconvert wrote: a table ---- */
 
-static char *told(const struct table_in *t, const char *key)
+static char *copy(const char *text)
 {
-	const char *value = table_key(t, key);
-
-	return value ? xstrdup(value) : NULL;
+	return text ? xstrdup(text) : NULL;
 }
 
 static void table_begin(struct recording *r, struct input *in)
@@ -281,10 +280,10 @@ static void table_begin(struct recording *r, struct input *in)
 	units = table_key(r->table, "units");
 	if (units && strncmp(units, "s ", 2) == 0)
 		r->format.units = xstrdup(units + 2);
-	r->format.seed = told(r->table, "seed");
-	r->format.filter = told(r->table, "filter");
-	r->format.start = told(r->table, "start");
-	r->format.doubt = told(r->table, "doubtful");
+	r->format.seed = copy(table_key(r->table, "seed"));
+	r->format.filter = copy(table_key(r->table, "filter"));
+	r->format.start = copy(table_key(r->table, "start"));
+	r->format.doubt = copy(table_doubt(r->table));
 	if (table_upstream(r->table))
 		r->format.cmd = xstrdup(table_upstream(r->table));
 }
@@ -336,8 +335,10 @@ struct recording *recording_open(const char *path, const struct recording_par *p
 				     : "rate");
 	if (r->text)
 		r->format = *text_format(r->text);
-	if (r->signal)
+	if (r->signal) {
 		r->format = *signal_format(r->signal);
+		r->name = signal_name(r->signal);
+	}
 	if (par->start && r->format.start && strcmp(par->start, r->format.start) != 0)
 		die(EXIT_USAGE, "--start %s: the recording began at %s", par->start,
 			r->format.start);
@@ -349,6 +350,16 @@ struct recording *recording_open(const char *path, const struct recording_par *p
 const struct signal_format *recording_format(const struct recording *r)
 {
 	return &r->format;
+}
+
+const char *recording_name(const struct recording *r)
+{
+	return r->name;
+}
+
+const char *recording_doubt(struct recording *r)
+{
+	return r->table ? table_doubt(r->table) : r->format.doubt;
 }
 
 size_t recording_read(struct recording *r, double *x, size_t frames)
@@ -413,6 +424,7 @@ struct recording_out *recording_create(
 	o->to = to;
 	o->channels = format->channels;
 	o->rate = format->rate;
+	o->doubt = copy(format->doubt);
 	if (to == TO_AU)
 		o->signal = signal_create(NULL, format);
 	else if (to == TO_WAV || to == TO_FLAC)
@@ -457,6 +469,15 @@ double recording_write(struct recording_out *o, const double *x, size_t frames)
 	return 0;
 }
 
+int recording_state(struct recording_out *o, const char *doubt)
+{
+	if ((o->to == TO_AU || o->to == TO_TEXT) && o->doubt && !strcmp(o->doubt, doubt))
+		return 1;
+	if (o->to == TO_TEXT)
+		table_comment(o->table, "doubtful", "%s", doubt);
+	return o->to == TO_TEXT;
+}
+
 void recording_done(struct recording_out *o)
 {
 	if (o->to == TO_AU)
@@ -467,5 +488,6 @@ void recording_done(struct recording_out *o)
 		sound_done(o);
 	if (ferror(stdout))
 		die(EXIT_RUN, "standard output:");
+	free(o->doubt);
 	free(o);
 }
