@@ -363,4 +363,7 @@ printf 'x/um z/m\n0 5\n1 6\n' >two.txt
 surfimport --profile two.txt >b.nrrd 2>err
 is "with --profile they are a profile" "$? $(heights b.nrrd) $(cat err)" "0 5 6 "
 
+printf '1e400 2\n3 4\n5 7\n' >huge.txt
+fails "a height beyond double precision is no missing one" 1 "line 1: not a row of numbers" \
+	surfimport --pixel 1um --height-unit 1m huge.txt
 done_testing

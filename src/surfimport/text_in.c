@@ -107,7 +107,8 @@ static int cell(const struct text *t, char *s, double *v)
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
 	*v = decimal_parse(s, &end);
-	return end != s && !*end;
+	/* infinity denotes a missing sample, a number beyond double precision none */
+	return end != s && !*end && !(isinf(*v) && isdigit((unsigned char)end[-1]));
 }
 
 static void keep(struct text *t, double v)
