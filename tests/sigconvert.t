@@ -172,7 +172,7 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	printf 't\tu\n0\t0.5\n0.001\t2\n0.002\t-3\n' | sigconvert --from text --output flac --stats st >clip.flac 2>err
 	is "clipping is counted, reported and gives status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
 	is "clipping cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
-	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC require a whole number' sigconvert --output wav f.au
+	fails "WAV of a fractional rate" 1 ' 44.1 Hz: WAV and FLAC require a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
 	sigconvert --output wav a.tsv >whole.wav
@@ -308,4 +308,7 @@ is "text of that signal states all of them" \
 fails "raw samples cannot state them" 3 'doubtful by its own account: hum; offset' \
 	sh -c 'sigconvert --output raw out.au >out.raw'
 
+printf 'time,a,b\n0,1,2\n1,1,1e10\n' >large.csv
+fails "a scale that no double holds makes no sample infinite" 1 'frame 1: 1e+10 times --scale 1e+300 is beyond' \
+	sigconvert --scale 1e300 --output text large.csv
 done_testing

@@ -103,6 +103,21 @@ static void check_type(const struct magnitudes *m)
 			m->huge / m->samples, m->most);
 }
 
+/* first: frames before these samples. */
+static void scale_all(double *x, size_t n, double first, size_t per_frame)
+{
+	for (size_t i = 0; i < n; i++) {
+		double scaled = scale * x[i];
+
+		if (isinf(scaled) && isfinite(x[i]))
+			die(EXIT_RUN,
+				"frame %.0f: %g times --scale %g is beyond double precision",
+				first + floor((double)i / (double)per_frame), x[i],
+				scale);
+		x[i] = scaled;
+	}
+}
+
 int main(int argc, char **argv)
 {
 	int operand = opt_parse(&prog, argc, argv);
@@ -140,8 +155,8 @@ int main(int argc, char **argv)
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
 		magnitudes_add(&magnitudes, x, n * (size_t)format.channels);
-		for (size_t i = 0; i < n * (size_t)format.channels; i++)
-			x[i] *= scale;
+		scale_all(
+			x, n * (size_t)format.channels, frames, (size_t)format.channels);
 		if (table)
 			channels_add(table, x, n);
 		else

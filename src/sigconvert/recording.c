@@ -150,10 +150,11 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 {
 	SF_VIRTUAL_IO io = { file_length, file_seek, file_read, file_write, file_tell };
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
+	char rate[NUMBER_TEXT];
 
 	if (format->rate != info.samplerate)
-		die(EXIT_RUN, "%.17g Hz: WAV and FLAC require a whole number of hertz",
-			format->rate);
+		die(EXIT_RUN, "%s Hz: WAV and FLAC require a whole number of hertz",
+			number_text(format->rate, rate));
 	info.format = o->to == TO_WAV ? SF_FORMAT_WAV | SF_FORMAT_DOUBLE
 				      : SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
 	if (isatty(STDOUT_FILENO))
