@@ -320,7 +320,7 @@ static int by_share(const void *a, const void *b)
  * voices 1.8 to 3.3 samples apart, 56 have all voices, and 48 without a closer look. */
 static void look_closer(struct mixture *m)
 {
-	struct mixture_source found[MIXTURE_SOURCES * HISTOGRAM_PEAKS];
+	struct mixture_source found[MIXTURE_SOURCES * HISTOGRAM_PEAKS] = { { 0 } };
 	struct histogram_peak peak[HISTOGRAM_PEAKS];
 	int given = m->par.sources, count = 0;
 
