@@ -168,7 +168,7 @@ int main(int argc, char **argv)
 	doubt = recording_doubt(in);
 	doubtful = doubt && !(out && recording_state(out, doubt));
 	if (doubtful)
-		warn("%s: doubtful by its own account: %s", recording_name(in), doubt);
+		doubt = recording_doubted(in);
 	if (table)
 		channels_done(table, doubt);
 	else

@@ -336,10 +336,8 @@ struct recording *recording_open(const char *path, const struct recording_par *p
 				     : "rate");
 	if (r->text)
 		r->format = *text_format(r->text);
-	if (r->signal) {
+	if (r->signal)
 		r->format = *signal_format(r->signal);
-		r->name = signal_name(r->signal);
-	}
 	if (par->start && r->format.start && strcmp(par->start, r->format.start) != 0)
 		die(EXIT_USAGE, "--start %s: the recording began at %s", par->start,
 			r->format.start);
@@ -353,14 +351,16 @@ const struct signal_format *recording_format(const struct recording *r)
 	return &r->format;
 }
 
-const char *recording_name(const struct recording *r)
-{
-	return r->name;
-}
-
 const char *recording_doubt(struct recording *r)
 {
 	return r->table ? table_doubt(r->table) : r->format.doubt;
+}
+
+const char *recording_doubted(struct recording *r)
+{
+	return r->table    ? table_doubted(r->table)
+	       : r->signal ? signal_doubted(r->signal)
+			   : NULL;
 }
 
 size_t recording_read(struct recording *r, double *x, size_t frames)

@@ -34,11 +34,12 @@ struct recording_out;
 
 /* All of them die if the file is invalid. */
 struct recording *recording_open(const char *path, const struct recording_par *par);
-const char *recording_name(const struct recording *r);
 const struct signal_format *recording_format(const struct recording *r);
 size_t recording_read(struct recording *r, double *x, size_t frames);
-/* Why what has been read so far is doubtful by its own account; NULL: it is not. */
+/* Why what has been read so far is doubtful by its own account; NULL: it is not.  Valid
+ * until the next call. */
 const char *recording_doubt(struct recording *r);
+const char *recording_doubted(struct recording *r); /* the same with a warning */
 void recording_close(struct recording *r);
 
 struct recording_out *recording_create(
