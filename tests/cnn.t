@@ -79,6 +79,20 @@ is "a section of six durations gives exit status 3" $? 3
 is "a section of six durations has a refused row" "$(column verdict long | head -n 1)" refused
 is "a section of six durations is reported" "$(cat err)" "delaynet: 1 of 2 sections are outside the range of the network"
 
+# A delay outside the reach is told by the record: sensor 2 follows 20 ms after sensor 1 in
+# the mean, with delays to +-0.15 ms, and the reach is 0.2 ms.
+for align in 0s 2ms 19.7ms 20.3ms 40ms; do
+	fails "delays about $align are marked as wrong" 3 "sensor 2 follows sensor 1 by 0.0199" \
+		sh -c "$apply --network small.net ${known%--align*} --align $align --pulse-duration 10ms \
+			--gain 0.909:0.909 --reach 0.01:0.02 s.au >wrong.tsv"
+	like "and in the table" "$(cat wrong.tsv)" "# doubtful: sensor 2 follows .*, outside --align"
+done
+for align in 19.84ms 20.12ms; do
+	ok "delays about $align are within the reach" \
+		sh -c "$apply --network small.net ${known%--align*} --align $align --pulse-duration 10ms \
+			--gain 0.909:0.909 --reach 0.01:0.02 s.au >right.tsv"
+done
+
 # shellcheck disable=SC2086
 {
 	fails "no sections" 2 "requires --sections" $apply --network small.net --align 1ms s.au

@@ -73,5 +73,19 @@ for late in 10 24; do
 	echo $?
 done >late
 is "voices without low frequencies are doubted with a delay of 24 samples, not of 10" "$(paste -s -d ' ' late)" "0 3"
+# delays: of the sources of the record on standard input, samples at 16 kHz
+delays() {
+	duet --method duet --align 0 | sed -n 's/^# source.* \([-0-9.e+]*\) s.*/\1/p' >found
+	awk '{ printf "%.1f\n", $1 * 16000 }' found | sort -n | paste -s -d ' ' -
+}
+# The delays of voices() are 1 and 3; these are 10 and 12, which only low frequencies tell
+# from others.
+later() {
+	sigconvert --output text | awk -F '\t' '/^[0-9]/ { x[++n] = $2; y[n] = $3 }
+		END { print "x y"; for (i = 10; i <= n; i++) print x[i], y[i - 9] }' | sigconvert --rate 16kHz
+}
+is "voices two samples apart are two sources" "$(voices 3 | delays)" "1.0 3.0"
+is "also with delays of ten and twelve samples" "$(voices 3 | later | delays)" "10.0 12.0"
+
 fails "a hop without a window" 2 "hop requires a --window" duet --method duet --align 0 --hop 9 mix.au
 done_testing

@@ -172,7 +172,7 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	printf 't\tu\n0\t0.5\n0.001\t2\n0.002\t-3\n' | sigconvert --from text --output flac --stats st >clip.flac 2>err
 	is "clipping is counted, reported and gives status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
 	is "clipping cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
-	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC require a whole number' sigconvert --output wav f.au
+	fails "WAV of a fractional rate" 1 ' 44.1 Hz: WAV and FLAC require a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
 	sigconvert --output wav a.tsv >whole.wav
@@ -276,4 +276,39 @@ for twice in 0 1; do
 	fails "one sample too $(test $twice = 0 && echo few || echo many) among times of one digit a sample" 1 \
 		'line 40[23]: time 0.40*1* s, want 0.40*1* s' sigconvert whole.txt
 done
+# A doubt stated behind the rows, or twice before them, reaches every output or the status.
+# ended FILE: gives a table the end line that its own message asks for.
+ended() {
+	n=$(grep -c '^[0-9]' "$1")
+	sum=$(sigconvert "$1" 2>&1 >/dev/null | sed -n 's/.* and \([0-9a-f]*\): damaged.*/\1/p')
+	sed "s/^# end: .*/# end: $n rows, crc32 $sum/" "$1"
+}
+{
+	sed '$d' a.tsv
+	printf '# doubtful: the amplifier drifted\n# end: 1 rows, crc32 00000000\n'
+} >edited.tsv
+ended edited.tsv >late.tsv
+{
+	sed -n '1,/^# rate/p' a.tsv
+	printf '# doubtful: hum\n# doubtful: offset\n'
+	sed '1,/^# rate/d;$d' a.tsv
+	echo '# end: 1 rows, crc32 00000000'
+} >edited.tsv
+ended edited.tsv >early.tsv
+for output in au raw channels; do
+	fails "a late doubt is told with --output $output" 3 'doubtful by its own account: the amplifier drifted' \
+		sh -c "sigconvert --output $output late.tsv >out.$output"
+done
+like "the table of channels states it" "$(cat out.channels)" '# doubtful: the amplifier drifted'
+ok "text states a late doubt behind the rows" sh -c 'sigconvert --output text late.tsv >out.tsv'
+is "in its own words" "$(sed -n 's/^# doubtful: //p' out.tsv)" "the amplifier drifted"
+ok "a signal states the doubts before the rows" sh -c 'sigconvert early.tsv >out.au'
+is "text of that signal states all of them" \
+	"$(sigconvert --output text out.au | sed -n 's/^# doubtful: //p')" "hum; offset"
+fails "raw samples cannot state them" 3 'doubtful by its own account: hum; offset' \
+	sh -c 'sigconvert --output raw out.au >out.raw'
+
+printf 'time,a,b\n0,1,2\n1,1,1e10\n' >large.csv
+fails "a scale that no double holds makes no sample infinite" 1 'frame 1: 1e+10 times --scale 1e+300 is beyond' \
+	sigconvert --scale 1e300 --output text large.csv
 done_testing

@@ -344,4 +344,26 @@ for type in 'float64 --big-endian' int64 'float32 --size 20x10'; do
 	fails "heights of another type: $type" 1 'heights of up to .* m: want another type, byte order or unit' \
 		surfimport --format raw --size 10x10 --pixel 1um --height-unit 1m --type $type doubles
 done
+# Four points of a grid are no matrix of three columns, whatever their order; heights that
+# repeat in a column are.
+for rows in '0 0 1\n1 0 4\n0 1 2\n1 1 7\n' '5;0;1\n5;2;4\n0;2;2\n0;0;7\n5;1;3\n0;1;4\n'; do
+	# shellcheck disable=SC2059
+	printf "$rows" >points.txt
+	fails "points of a grid are refused: $rows" 1 "look like points x, y, z" \
+		surfimport --pixel 1um --height-unit 1um points.txt
+done
+printf '0 0 1\n1 0 4\n1 0 2\n0 2 7\n' >heights.txt
+surfimport --pixel 1um --height-unit 1m heights.txt >b.nrrd
+is "heights that repeat are a matrix" "$(heights b.nrrd)" "0 0 1 1 0 4 1 0 2 0 2 7"
+printf '0 5\n1 6\n' >two.txt
+surfimport --pixel 1um --height-unit 1m two.txt >b.nrrd 2>err
+is "two rows of two columns are heights" "$? $(heights b.nrrd)" "0 0 5 1 6"
+like "a warning states it" "$(cat err)" "two rows of two columns are read as heights: --profile"
+printf 'x/um z/m\n0 5\n1 6\n' >two.txt
+surfimport --profile two.txt >b.nrrd 2>err
+is "with --profile they are a profile" "$? $(heights b.nrrd) $(cat err)" "0 5 6 "
+
+printf '1e400 2\n3 4\n5 7\n' >huge.txt
+fails "a height beyond double precision is no missing one" 1 "line 1: not a row of numbers" \
+	surfimport --pixel 1um --height-unit 1m huge.txt
 done_testing

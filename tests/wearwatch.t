@@ -80,6 +80,17 @@ else
 	skip 'a power failure can be tested' 'no setsid'
 fi
 
+# Three samples of sensor 1 are missing just before the third hour and two behind: in the
+# overlap of both.  Ten are clipped there, at the largest value of the record.
+sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^# (stream|end):/ { next }
+	/^[0-9]/ { if ($1 > 1.97995 && $1 < 1.98025 || $1 > 2.03995 && $1 < 2.04015) $2 = "nan"
+		if ($1 > 1.94995 && $1 < 1.95095) $3 = 10 } { print }' | sigconvert --from text >missing.au
+watch --state missing missing.au 2>said
+is 'missing samples of an overlap are counted once' \
+	"$(column doubts missing/chunks.tsv | tr ',' '\n' | grep missing | tr '\n' ' ')" 'missing1:3 missing1:2 '
+is 'clipped samples of an overlap are counted once' \
+	"$(column doubts missing/chunks.tsv | tr ',' '\n' | grep clipped | tr '\n' ' ')" 'clipped2:10 '
+
 # Sensor 1 is clipped in one hour; an alarm by rate is raised, reported once and cleared.
 sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^[0-9]/ && $1 >= 2 && $1 < 3 && $2 > 0.3 { $2 = 0.3 }
 	/^[0-9]/ && $1 < 4 { print } !/^[0-9]/ { print }' | sigconvert --from text >clipped.au

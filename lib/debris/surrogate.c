@@ -133,20 +133,36 @@ struct loaded {
 	double cells, flowing;
 };
 
-static struct loaded find_loaded(const double *pressure, size_t cells, double hardness)
+static struct loaded find_loaded(const struct stress_span *run,
+	const struct stress_span *end, const double *pressure, size_t nx, double hardness)
 {
 	struct loaded l = { 0 };
 
-	if (!(hardness > 0))
-		return l;
-	for (size_t i = lanes_next(pressure, 0, cells); i < cells;
-		i = lanes_next(pressure, i + 1, cells)) {
-		double p = pressure[i];
+	for (; hardness > 0 && run < end; run++) {
+		const double *row = pressure + (size_t)run->y * nx;
 
-		l.cells += p > 0;
-		l.flowing += p > 0 && p >= hardness;
+		for (int x = run->begin; x < run->end; x++) {
+			l.cells += row[x] > 0;
+			l.flowing += row[x] > 0 && row[x] >= hardness;
+		}
 	}
 	return l;
+}
+
+/* The runs of loaded cells that are not passed yet. */
+struct ahead {
+	const struct stress_span *run, *end;
+};
+
+/* The next loaded cell of row y from x on, or nx; y and x never go back. */
+static size_t next_loaded(struct ahead *a, int y, size_t x, size_t nx)
+{
+	while (a->run < a->end &&
+		(a->run->y < y || (a->run->y == y && (size_t)a->run->end <= x)))
+		a->run++;
+	if (a->run == a->end || a->run->y > y)
+		return nx;
+	return (size_t)a->run->begin > x ? (size_t)a->run->begin : x;
 }
 
 /* Sums of products of the gradients, in cells. */
@@ -154,19 +170,21 @@ struct gradients {
 	lanes xx, xy, yy;
 };
 
-/* Between two rows.  Where no cell is loaded the gradients are zero. */
-static void add_gradients(
-	const double *p, const double *q, size_t nx, struct gradients *sum)
+/* Between two rows, y and the next.  Where no cell is loaded the gradients are zero. */
+static void add_gradients(const double *p, size_t nx, int y, struct ahead *ahead,
+	struct ahead *below, struct gradients *sum)
 {
-	size_t next_p = lanes_next(p, 0, nx), next_q = lanes_next(q, 0, nx);
+	const double *q = p + nx;
+	size_t next_p = next_loaded(ahead, y, 0, nx),
+	       next_q = next_loaded(below, y + 1, 0, nx);
 
 	for (size_t x = 0; x + 1 < nx; x += 2) {
 		int n = x + 2 < nx ? 2 : 1;
 
 		if (next_p < x)
-			next_p = lanes_next(p, x, nx);
+			next_p = next_loaded(ahead, y, x, nx);
 		if (next_q < x)
-			next_q = lanes_next(q, x, nx);
+			next_q = next_loaded(below, y + 1, x, nx);
 		if (next_p > x + 2 && next_q > x + 2) {
 			x = (lesser(next_p, next_q) - 1) / 2 * 2 - 2;
 			continue;
@@ -181,16 +199,18 @@ static void add_gradients(
 	}
 }
 
-struct surrogate_contact surrogate_contact(
-	const struct stress_par *par, const double *pressure, double hardness)
+struct surrogate_contact surrogate_contact(const struct stress_par *par,
+	const struct stress *stress, const double *pressure, double hardness)
 {
-	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
-	struct loaded l = find_loaded(pressure, nx * ny, hardness);
+	size_t nx = (size_t)par->nx, count;
+	const struct stress_span *run = stress_loads(stress, &count);
+	struct loaded l = find_loaded(run, run + count, pressure, nx, hardness);
+	struct ahead ahead = { run, run + count }, below = ahead;
 	struct gradients g = { .xx = { 0 } };
 	double xx, xy, yy, sum;
 
-	for (size_t y = 0; y + 1 < ny; y++)
-		add_gradients(pressure + y * nx, pressure + (y + 1) * nx, nx, &g);
+	for (int y = 0; y + 1 < par->ny; y++)
+		add_gradients(pressure + (size_t)y * nx, nx, y, &ahead, &below, &g);
 	xx = (g.xx[0] + g.xx[1]) / (par->dx * par->dx);
 	xy = (g.xy[0] + g.xy[1]) / (par->dx * par->dy);
 	yy = (g.yy[0] + g.yy[1]) / (par->dy * par->dy);

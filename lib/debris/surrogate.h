@@ -89,9 +89,9 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 /* The highest level for which there is a score. */
 double surrogate_highest_level(const struct surrogate *s);
 
-/* Hardness 0: none. */
-struct surrogate_contact surrogate_contact(
-	const struct stress_par *par, const double *pressure, double hardness);
+/* stress: loaded with the pressure; hardness 0: none. */
+struct surrogate_contact surrogate_contact(const struct stress_par *par,
+	const struct stress *stress, const double *pressure, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
  * (the logarithm as far up as down).  0 where the contact lies outside the range of the

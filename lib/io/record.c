@@ -156,12 +156,27 @@ void record_drop_key(struct record *r, const char *key)
 	keys_drop(&r->keys, key);
 }
 
+/* Whether a reason is one of, or some neighbours of, those joined by "; ". */
+static int is_among(const char *reasons, const char *why)
+{
+	size_t n = strlen(why);
+
+	for (const char *at = reasons; (at = strstr(at, why)) != NULL; at++) {
+		int begins = at == reasons ||
+			     (at - reasons > 1 && at[-1] == ' ' && at[-2] == ';');
+
+		if (begins && (at[n] == '\0' || strncmp(at + n, "; ", 2) == 0))
+			return 1;
+	}
+	return 0;
+}
+
 void record_doubt(struct record *r, const char *why)
 {
 	const char *before = record_get(r, "doubtful");
 	char *both;
 
-	if (before && strstr(before, why))
+	if (before && is_among(before, why))
 		return;
 	both = before ? xprintf("%s; %s", before, why) : xstrdup(why);
 	record_set(r, "doubtful", "%s", both);

@@ -355,6 +355,14 @@ static void take_most(const double *row, int begin, int end, double *most, size_
 	}
 }
 
+/* As in squares without a point that is wanted: most of them where little is loaded. */
+static int is_zero(const double *x, size_t n)
+{
+	while (n > 0 && x[n - 1] == 0)
+		n--;
+	return n == 0;
+}
+
 /* The equivalent stress of a weighted sum is at most the sum of the weights' sizes times
  * the largest one. */
 static enum num_status find_most(
@@ -376,7 +384,9 @@ static enum num_status find_most(
 				most + first * numbers + c, numbers);
 	}
 	for (size_t i = 0; i < squares; i++)
-		g->most[i] = weight * largest_size(want, most + i * numbers);
+		g->most[i] = is_zero(most + i * numbers, numbers)
+				     ? 0
+				     : weight * largest_size(want, most + i * numbers);
 	free(most);
 	return NUM_OK;
 }

@@ -128,8 +128,8 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
 		NUM_OK)
 		die(EXIT_RUN, "out of memory");
-	contact = surrogate_contact(
-		&par.stress, pressure, record_get_number(r, "hardness"));
+	contact = surrogate_contact(&par.stress, debris_stress(d), pressure,
+		record_get_number(r, "hardness"));
 	add_samples(in, surface, r->nx, &step, list, n, &contact);
 	footprints_free(f);
 	debris_free(d);

@@ -138,7 +138,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	}
 	q->volumes = (struct quick_volumes){ .exact = n == 0, .particle = q->guess };
 	q->audited = 0;
-	contact = surrogate_contact(&q->par, pressure, hardness);
+	contact = surrogate_contact(&q->par, stress, pressure, hardness);
 	if (!surrogate_guess(&q->surrogate, list, n, &contact, level, q->guess,
 		    &q->volumes.total)) {
 		q->outside++;

@@ -1,4 +1,5 @@
 #include "arrivals.h"
+#include "alignment.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "example_options.h"
@@ -78,8 +79,8 @@ static void move_stretch(struct stretch *s, long long from, long long to)
 
 /* The pulses of frames [from, to) of channel 1 and of as many of channel 2, shift frames
  * later; 0 if they do not suit the network. */
-static int find_pulses(struct network *net, struct stretch *s, long long from,
-	long long to, long long shift, struct cnn_pulse *pulse)
+static int find_pulses(struct network *net, struct stretch *s, struct alignment *a,
+	long long from, long long to, long long shift, struct cnn_pulse *pulse)
 {
 	double rate = (double)signal_format(s->in)->rate;
 	struct cnn_section section = { .duration = duration * rate,
@@ -91,10 +92,13 @@ static int find_pulses(struct network *net, struct stretch *s, long long from,
 	/* A section that is too long is not read in. */
 	if ((double)(to - from) * CNN_PER_PULSE > CNN_POINTS * section.duration)
 		return 0;
-	move_stretch(s, from, to + shift);
+	move_stretch(s, from, from + (long long)alignment_reach(a, (size_t)(to - from)));
 	end = s->first + (long long)s->n - shift;
 	if (from < s->first || end <= from)
 		return 0;
+	alignment_add(a, s->y[0] + (from - s->first),
+		(size_t)((to < end ? to : end) - from), s->y[1] + (from - s->first),
+		(size_t)(s->first + (long long)s->n - from));
 	section.n = (size_t)((to < end ? to : end) - from);
 	section.y1 = s->y[0] + (from - s->first);
 	section.y2 = s->y[1] + (from - s->first) + shift;
@@ -103,8 +107,8 @@ static int find_pulses(struct network *net, struct stretch *s, long long from,
 }
 
 /* Reads the table of sections, and the record up to the end of each. */
-static void work_sections(struct network *net, struct stretch *s, struct table_in *in,
-	struct table_out *out)
+static void work_sections(struct network *net, struct stretch *s, struct alignment *a,
+	struct table_in *in, struct table_out *out)
 {
 	int number = table_need(in, "section"), begin = table_need(in, "begin"),
 	    end = table_need(in, "end");
@@ -124,7 +128,7 @@ static void work_sections(struct network *net, struct stretch *s, struct table_i
 				table_name(in), table_line(in));
 		last = from;
 		first = llround(from * rate);
-		m = find_pulses(net, s, first, llround(to * rate), shift, pulse);
+		m = find_pulses(net, s, a, first, llround(to * rate), shift, pulse);
 		for (int k = 0; k < (m ? m : 1); k++) {
 			double t = (double)first + pulse[k].t,
 			       delay = (double)shift + pulse[k].delta;
@@ -147,6 +151,29 @@ static void work_sections(struct network *net, struct stretch *s, struct table_i
 	stats_set("sections_refused", (double)refused);
 }
 
+/* The network tells no delays but those within its reach of --align: 1, with a comment
+ * and a warning, where those of the record are others. */
+static int is_misaligned(
+	const struct alignment *a, const struct stretch *s, struct table_out *out)
+{
+	double delay = alignment_delay(a) / (double)signal_format(s->in)->rate;
+	double reach = lessons.reach.v[1] * duration;
+	char *why;
+
+	if (refused == sections || fabs(delay - align) <= reach)
+		return 0;
+	why = isnan(delay)
+		      ? xprintf("the channels have no pulses in common at --align %g s",
+				align)
+		      : xprintf("sensor 2 follows sensor 1 by %.4g s, outside --align "
+				"%g s by more than --reach, %g s",
+				delay, align, reach);
+	warn("%s: %s: the delays are wrong", signal_name(s->in), why);
+	table_comment(out, "doubtful", "%s", why);
+	free(why);
+	return 1;
+}
+
 /* The rest of a pipe is read, so that its writer does not fail. */
 static void drain(struct stretch *s)
 {
@@ -162,6 +189,10 @@ int arrivals_apply(const char *network, const char *record)
 	struct network *net = lessons_network(network, &file);
 	const char *why[2];
 	struct stretch s = { .in = signal_open(record, NULL) };
+	double rate = (double)signal_format(s.in)->rate;
+	/* Those of sections, which are so long at most, and twice what is expected. */
+	struct alignment *a = alignment_new(duration * rate,
+		fmax(2 * align, align + duration * CNN_POINTS / CNN_PER_PULSE) * rate);
 	struct table_in *in = table_open(sections_file);
 	char *cmd = opt_cmd(signal_format(s.in)->cmd, NULL);
 	struct table_out *out = table_create(NULL, cmd, "1 s s V s 1 1 1",
@@ -171,9 +202,10 @@ int arrivals_apply(const char *network, const char *record)
 	if (signal_format(s.in)->channels != 2)
 		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(s.in),
 			signal_format(s.in)->channels);
-	work_sections(net, &s, in, out);
+	work_sections(net, &s, a, in, out);
 	drain(&s);
 	doubtful = refused > 0;
+	doubtful |= is_misaligned(a, &s, out);
 	if (refused)
 		warn("%ld of %ld sections are outside the range of the network", refused,
 			sections);
@@ -187,6 +219,7 @@ int arrivals_apply(const char *network, const char *record)
 	table_done(out);
 	table_close(in);
 	signal_close(s.in);
+	alignment_free(a);
 	free(s.y[0]);
 	free(s.y[1]);
 	free(cmd);

@@ -120,7 +120,7 @@ static double level_of(struct channel *c)
 	return level > DBL_MIN ? level : level == DBL_MIN ? 0 : NAN;
 }
 
-void channels_done(struct channels *c)
+void channels_done(struct channels *c, const char *doubt)
 {
 	struct table_out *t = table_create(NULL, c->cmd, "1 Hz 1 unit unit unit unit 1 1",
 		"channel rate frames low mean high level rails missing");
@@ -144,6 +144,8 @@ void channels_done(struct channels *c)
 		table_end_row(t);
 		sketch_free(&at->levels);
 	}
+	if (doubt)
+		table_comment(t, "doubtful", "%s", doubt);
 	table_done(t);
 	free(c->cmd);
 	free(c->channel);

@@ -16,7 +16,7 @@ struct channels;
 
 struct channels *channels_new(const struct signal_format *format);
 void channels_add(struct channels *c, const double *x, size_t frames);
-/* Writes the table to standard output; frees. */
-void channels_done(struct channels *c);
+/* Writes the table to standard output; frees.  doubt: of the samples, or NULL. */
+void channels_done(struct channels *c, const char *doubt);
 
 #endif

@@ -103,6 +103,21 @@ static void check_type(const struct magnitudes *m)
 			m->huge / m->samples, m->most);
 }
 
+/* first: frames before these samples. */
+static void scale_all(double *x, size_t n, double first, size_t per_frame)
+{
+	for (size_t i = 0; i < n; i++) {
+		double scaled = scale * x[i];
+
+		if (isinf(scaled) && isfinite(x[i]))
+			die(EXIT_RUN,
+				"frame %.0f: %g times --scale %g is beyond double precision",
+				first + floor((double)i / (double)per_frame), x[i],
+				scale);
+		x[i] = scaled;
+	}
+}
+
 int main(int argc, char **argv)
 {
 	int operand = opt_parse(&prog, argc, argv);
@@ -120,6 +135,8 @@ int main(int argc, char **argv)
 	struct channels *table = NULL;
 	struct signal_format format;
 	double *x, frames = 0;
+	const char *doubt;
+	int doubtful;
 	size_t n;
 
 	check_options();
@@ -138,26 +155,30 @@ int main(int argc, char **argv)
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
 		magnitudes_add(&magnitudes, x, n * (size_t)format.channels);
-		for (size_t i = 0; i < n * (size_t)format.channels; i++)
-			x[i] *= scale;
+		scale_all(
+			x, n * (size_t)format.channels, frames, (size_t)format.channels);
 		if (table)
 			channels_add(table, x, n);
 		else
 			clipped += recording_write(out, x, n);
 		frames += (double)n;
 	}
-	recording_close(in);
 	if (from == FROM_RAW)
 		check_type(&magnitudes);
+	doubt = recording_doubt(in);
+	doubtful = doubt && !(out && recording_state(out, doubt));
+	if (doubtful)
+		doubt = recording_doubted(in);
 	if (table)
-		channels_done(table);
+		channels_done(table, doubt);
 	else
 		recording_done(out);
+	recording_close(in);
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
 		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
-	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(clipped > 0 || doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

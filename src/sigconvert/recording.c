@@ -39,6 +39,7 @@ struct recording_out {
 	int failed; /* a write failed, which libsndfile does not always report */
 	int channels;
 	double frame, rate;
+	char *doubt; /* that of the header, or NULL */
 };
 
 /* ---- sound files ---- */
@@ -149,10 +150,11 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 {
 	SF_VIRTUAL_IO io = { file_length, file_seek, file_read, file_write, file_tell };
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
+	char rate[NUMBER_TEXT];
 
 	if (format->rate != info.samplerate)
-		die(EXIT_RUN, "%.17g Hz: WAV and FLAC require a whole number of hertz",
-			format->rate);
+		die(EXIT_RUN, "%s Hz: WAV and FLAC require a whole number of hertz",
+			number_text(format->rate, rate));
 	info.format = o->to == TO_WAV ? SF_FORMAT_WAV | SF_FORMAT_DOUBLE
 				      : SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
 	if (isatty(STDOUT_FILENO))
@@ -252,11 +254,9 @@ static enum recording_from recognise(struct input *in)
 
 /* ---- text that sigconvert wrote: a table ---- */
 
-static char *told(const struct table_in *t, const char *key)
+static char *copy(const char *text)
 {
-	const char *value = table_key(t, key);
-
-	return value ? xstrdup(value) : NULL;
+	return text ? xstrdup(text) : NULL;
 }
 
 static void table_begin(struct recording *r, struct input *in)
@@ -281,10 +281,10 @@ static void table_begin(struct recording *r, struct input *in)
 	units = table_key(r->table, "units");
 	if (units && strncmp(units, "s ", 2) == 0)
 		r->format.units = xstrdup(units + 2);
-	r->format.seed = told(r->table, "seed");
-	r->format.filter = told(r->table, "filter");
-	r->format.start = told(r->table, "start");
-	r->format.doubt = told(r->table, "doubtful");
+	r->format.seed = copy(table_key(r->table, "seed"));
+	r->format.filter = copy(table_key(r->table, "filter"));
+	r->format.start = copy(table_key(r->table, "start"));
+	r->format.doubt = copy(table_doubt(r->table));
 	if (table_upstream(r->table))
 		r->format.cmd = xstrdup(table_upstream(r->table));
 }
@@ -351,6 +351,18 @@ const struct signal_format *recording_format(const struct recording *r)
 	return &r->format;
 }
 
+const char *recording_doubt(struct recording *r)
+{
+	return r->table ? table_doubt(r->table) : r->format.doubt;
+}
+
+const char *recording_doubted(struct recording *r)
+{
+	return r->table    ? table_doubted(r->table)
+	       : r->signal ? signal_doubted(r->signal)
+			   : NULL;
+}
+
 size_t recording_read(struct recording *r, double *x, size_t frames)
 {
 	if (r->text)
@@ -413,6 +425,7 @@ struct recording_out *recording_create(
 	o->to = to;
 	o->channels = format->channels;
 	o->rate = format->rate;
+	o->doubt = copy(format->doubt);
 	if (to == TO_AU)
 		o->signal = signal_create(NULL, format);
 	else if (to == TO_WAV || to == TO_FLAC)
@@ -457,6 +470,15 @@ double recording_write(struct recording_out *o, const double *x, size_t frames)
 	return 0;
 }
 
+int recording_state(struct recording_out *o, const char *doubt)
+{
+	if ((o->to == TO_AU || o->to == TO_TEXT) && o->doubt && !strcmp(o->doubt, doubt))
+		return 1;
+	if (o->to == TO_TEXT)
+		table_comment(o->table, "doubtful", "%s", doubt);
+	return o->to == TO_TEXT;
+}
+
 void recording_done(struct recording_out *o)
 {
 	if (o->to == TO_AU)
@@ -467,5 +489,6 @@ void recording_done(struct recording_out *o)
 		sound_done(o);
 	if (ferror(stdout))
 		die(EXIT_RUN, "standard output:");
+	free(o->doubt);
 	free(o);
 }

@@ -36,12 +36,18 @@ struct recording_out;
 struct recording *recording_open(const char *path, const struct recording_par *par);
 const struct signal_format *recording_format(const struct recording *r);
 size_t recording_read(struct recording *r, double *x, size_t frames);
+/* Why what has been read so far is doubtful by its own account; NULL: it is not.  Valid
+ * until the next call. */
+const char *recording_doubt(struct recording *r);
+const char *recording_doubted(struct recording *r); /* the same with a warning */
 void recording_close(struct recording *r);
 
 struct recording_out *recording_create(
 	enum recording_to to, const struct signal_format *format);
 /* Returns the samples beyond full scale, which the format cuts off. */
 double recording_write(struct recording_out *o, const double *x, size_t frames);
+/* At the end: whether the output states the doubt, in its header or now. */
+int recording_state(struct recording_out *o, const char *doubt);
 void recording_done(struct recording_out *o);
 
 /* Text, for recording.c. */

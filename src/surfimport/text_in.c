@@ -107,7 +107,8 @@ static int cell(const struct text *t, char *s, double *v)
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
 	*v = decimal_parse(s, &end);
-	return end != s && !*end;
+	/* infinity denotes a missing sample, a number beyond double precision none */
+	return end != s && !*end && !(isinf(*v) && isdigit((unsigned char)end[-1]));
 }
 
 static void keep(struct text *t, double v)
@@ -328,8 +329,41 @@ static int is_ramp(const double *x, long n, long stride)
 	return n > 2 && step != 0;
 }
 
+/* How many different numbers a column has. */
+static long count_different(const struct text *t, int column)
+{
+	long n = 0;
+
+	for (long i = 0; i < t->rows; i++) {
+		long k = 0;
+
+		while (t->value[k * t->columns + column] !=
+				t->value[i * t->columns + column] &&
+			k < i)
+			k++;
+		n += k == i;
+	}
+	return n;
+}
+
+/* 1 if the first two of three columns are the points of a grid, each with every other:
+ * heights rarely repeat, and never so. */
+static int is_grid(const struct text *t)
+{
+	long nx = count_different(t, 0), ny = count_different(t, 1);
+
+	for (long i = 0; i < t->rows; i++)
+		for (long k = 0; k < i; k++) {
+			const double *a = t->value + 3 * i, *b = t->value + 3 * k;
+
+			if (a[0] == b[0] && a[1] == b[1])
+				return 0;
+		}
+	return nx > 1 && ny > 1 && nx * ny == t->rows;
+}
+
 /* 1 if two columns may be a profile: the first is sorted, or equally spaced and the
- * second is not, which few heights are seldom by chance.  Two rows may be anything. */
+ * second is not, which few heights are seldom by chance. */
 static int is_profile(const struct text *t)
 {
 	if (t->columns != 2)
@@ -346,8 +380,12 @@ static void refuse_points(const struct text *t)
 			"%s: two columns, positions and heights, are not a matrix: --profile "
 			"reads them",
 			t->c->name);
-	if (t->columns == 3 && t->rows >= SORTED_ROWS &&
-		(is_sorted(t, 0) || is_sorted(t, 1)))
+	if (t->columns == 2 && t->rows == 2)
+		warn("%s: two rows of two columns are read as heights: --profile reads "
+		     "positions and heights",
+			t->c->name);
+	if (t->columns == 3 &&
+		(t->rows < SORTED_ROWS ? is_grid(t) : is_sorted(t, 0) || is_sorted(t, 1)))
 		die(EXIT_RUN,
 			"%s: three columns look like points x, y, z: want a matrix of heights, "
 			"or --profile for the last two",

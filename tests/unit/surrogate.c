@@ -216,6 +216,19 @@ static void test_freedom(void)
 		"that of a thousand regions is as wide as for a normal distribution");
 }
 
+/* Of a pressure that the stress is loaded with. */
+static struct surrogate_contact contact_of(
+	const struct stress_par *par, const double *pressure, double hardness)
+{
+	struct stress *stress = stress_new(par);
+	struct surrogate_contact c;
+
+	ok(stress && stress_load(stress, pressure) == NUM_OK, "the stress is loaded");
+	c = surrogate_contact(par, stress, pressure, hardness);
+	stress_free(stress);
+	return c;
+}
+
 /* Pressures that rise linearly by (x, y) a cell from 1 on. */
 static void test_contact(int axis, double x, double y, double lay, double oblique)
 {
@@ -227,10 +240,10 @@ static void test_contact(int axis, double x, double y, double lay, double obliqu
 	for (int i = 0; i < NX * NY; i++)
 		p[i] = 1 + par.dx * x * (i % NX) + par.dy * y * (i / NX);
 	p[0] = 0;
-	c = surrogate_contact(&par, p, 1e-3);
+	c = contact_of(&par, p, 1e-3);
 	ok(c.property[SURROGATE_FLOW] == 1, "all loaded cells are at the hardness");
 	p[0] = 1;
-	c = surrogate_contact(&par, p, 0);
+	c = contact_of(&par, p, 0);
 	ok(c.property[SURROGATE_FLOW] == 0, "without a hardness none is");
 	ok(fabs(c.property[SURROGATE_LAY] - lay) < 1e-12 &&
 			fabs(c.property[SURROGATE_OBLIQUE] - oblique) < 1e-12,
@@ -380,7 +393,7 @@ static void test_scattered(int nx)
 			xy += gx * gy;
 			yy += gy * gy;
 		}
-	c = surrogate_contact(&par, p, 0);
+	c = contact_of(&par, p, 0);
 	worst = fmax(fabs(c.property[SURROGATE_LAY] - (xx - yy) / (xx + yy)),
 		fabs(c.property[SURROGATE_OBLIQUE] - 2 * fabs(xy) / (xx + yy)));
 	ok(worst < 1e-14, "gradients of scattered loads, rows of %d cells, to %.0e", nx,

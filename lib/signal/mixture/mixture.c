@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = HISTOGRAM_CELLS, ROUNDS = 5 };
+/* Passes of a fit to the points of each source, and of a closer look at them. */
+enum { CELLS = HISTOGRAM_CELLS, ROUNDS = 5, CLOSER = ROUNDS + 1 };
 
 /* Range of the histogram: a - 1/a from -ODDS to ODDS; delays from -reach to reach
  * samples, the first of these that leaves little beyond it.  Of 72 mixtures of one to
@@ -24,10 +25,10 @@ struct mixture {
 	struct mixture_par par;
 	struct fft *fft;
 	size_t bins, n, room;
-	long passed; /* windows transformed */
-	double *x;   /* frames of two */
-	struct histogram histogram;
-	double reach, lost; /* share of the weight beyond it */
+	long passed;                         /* windows transformed */
+	double *x;                           /* frames of two */
+	struct histogram histogram, *closer; /* closer: one for each source */
+	double reach, lost;                  /* share of the weight beyond it */
 	int count;
 	struct mixture_source source[MIXTURE_SOURCES];
 	double complex *path;           /* a exp(-i w delta) of each source and bin */
@@ -57,8 +58,9 @@ struct mixture *mixture_new(const struct mixture_par *par)
 	m->y1 = fft_alloc_complex(m->bins);
 	m->y2 = fft_alloc_complex(m->bins);
 	m->part = fft_alloc_complex(m->bins);
-	if (!m->fft || !m->path || !m->shape || !m->frame || !m->y1 || !m->y2 ||
-		!m->part) {
+	m->closer = calloc(MIXTURE_SOURCES, sizeof *m->closer);
+	if (!m->closer || !m->fft || !m->path || !m->shape || !m->frame || !m->y1 ||
+		!m->y2 || !m->part) {
 		mixture_free(m);
 		return NULL;
 	}
@@ -74,6 +76,7 @@ void mixture_free(struct mixture *m)
 	fft_done(m->fft);
 	free(m->x);
 	free(m->path);
+	free(m->closer);
 	fft_free(m->shape);
 	fft_free(m->frame);
 	fft_free(m->y1);
@@ -110,7 +113,8 @@ static long transform(struct mixture *m, size_t f)
 
 	/* Once in every pass, and for the separation. */
 	if (m->par.progress)
-		m->par.progress(m->passed, (REACHES + ROUNDS + 1) * (long)windows(m));
+		m->par.progress(
+			m->passed, (REACHES + CLOSER + ROUNDS + 1) * (long)windows(m));
 	m->passed++;
 
 	for (int c = 0; c < 2; c++) {
@@ -153,22 +157,29 @@ const double *mixture_histogram(const struct mixture *m)
 	return m->histogram.weight;
 }
 
+/* Adds a point of two amplitudes, the second one later by delta. */
+static void count_point(
+	struct histogram *h, double p1, double p2, double delta, double reach)
+{
+	double i = ((p2 / p1 - p1 / p2) / ODDS + 1) * CELLS / 2;
+	double j = (delta / reach + 1) * CELLS / 2;
+
+	if (i >= 0 && i < CELLS && j >= 0 && j < CELLS)
+		h->weight[(int)i * CELLS + (int)j] += p1 * p2;
+}
+
 /* Counts the present window; returns, of the frequencies at which even delays of PLAIN
  * times the reach are plain, the weight in all and beyond the reach. */
 static void count_window(struct mixture *m, double *all, double *beyond)
 {
 	for (size_t k = 1; k < m->bins && frequency(m, k) * m->reach < M_PI; k++) {
-		double p1 = cabs(m->y1[k]), p2 = cabs(m->y2[k]), a, delta, i, j;
+		double p1 = cabs(m->y1[k]), p2 = cabs(m->y2[k]), delta;
 		int plain = frequency(m, k) * PLAIN * m->reach < M_PI;
 
 		if (p1 * p2 == 0)
 			continue;
-		a = p2 / p1;
 		delta = -carg(m->y2[k] / m->y1[k]) / frequency(m, k);
-		i = ((a - 1 / a) / ODDS + 1) * CELLS / 2;
-		j = (delta / m->reach + 1) * CELLS / 2;
-		if (i >= 0 && i < CELLS && j >= 0 && j < CELLS)
-			m->histogram.weight[(int)i * CELLS + (int)j] += p1 * p2;
+		count_point(&m->histogram, p1, p2, delta, m->reach);
 		*all += plain ? p1 * p2 : 0;
 		*beyond += plain && fabs(delta) > m->reach ? p1 * p2 : 0;
 	}
@@ -258,6 +269,83 @@ static void refine(struct mixture *m)
 	}
 }
 
+static struct mixture_source source_of(
+	const struct histogram_peak *peak, double delta, double reach, double share)
+{
+	return (struct mixture_source){ attenuation(ODDS * (2 * peak->i / CELLS - 1)),
+		delta + reach * (2 * peak->j / CELLS - 1), share * peak->share };
+}
+
+/* Counts the points of each source by their delay from its own, over the frequencies
+ * that the shortest reach adds: lower ones tell delays less well. */
+static void count_closer(struct mixture *m)
+{
+	memset(m->closer, 0, (size_t)m->count * sizeof *m->closer);
+	make_paths(m);
+	for (size_t f = 0; f < windows(m); f++) {
+		transform(m, f);
+		for (size_t b = 1; b < m->bins && frequency(m, b) * *REACH < M_PI; b++) {
+			int k = likeliest(m, b);
+			double complex path = m->path[(size_t)k * m->bins + b];
+			double p1 = cabs(m->y1[b]), p2 = cabs(m->y2[b]);
+
+			if (p1 * p2 > 0 && frequency(m, b) * m->reach >= M_PI)
+				count_point(&m->closer[k], p1, p2,
+					-carg(m->y2[b] / (m->y1[b] * path)) /
+						frequency(m, b),
+					*REACH);
+		}
+	}
+}
+
+/* Whether a delay is nearer to another source than to k. */
+static int is_of_another(const struct mixture *m, int k, double delta)
+{
+	for (int other = 0; other < m->count; other++)
+		if (fabs(delta - m->source[other].delta) <
+			fabs(delta - m->source[k].delta))
+			return 1;
+	return 0;
+}
+
+static int by_share(const void *a, const void *b)
+{
+	const struct mixture_source *s = a, *t = b;
+
+	return (s->share < t->share) - (s->share > t->share);
+}
+
+/* Divides what one peak of a long reach, of low frequencies alone, holds together.  Of 60
+ * mixtures of one to three voices with delays up to 15 samples, half of them with two
+ * voices 1.8 to 3.3 samples apart, 56 have all voices, and 48 without a closer look. */
+static void look_closer(struct mixture *m)
+{
+	struct mixture_source found[MIXTURE_SOURCES * HISTOGRAM_PEAKS] = { { 0 } };
+	struct histogram_peak peak[HISTOGRAM_PEAKS];
+	int given = m->par.sources, count = 0;
+
+	for (int i = 0; i < ROUNDS; i++)
+		refine(m);
+	count_closer(m);
+	for (int k = 0; k < m->count; k++) {
+		int n = histogram_peaks(&m->closer[k], HISTOGRAM_PEAKS, PEAK_SHARE, peak);
+
+		if (n == 0) /* of low frequencies alone */
+			found[count++] = m->source[k];
+		for (int i = 0; i < n; i++) {
+			found[count] = source_of(
+				&peak[i], m->source[k].delta, *REACH, m->source[k].share);
+			count += !is_of_another(m, k, found[count].delta);
+		}
+	}
+	qsort(found, (size_t)count, sizeof *found, by_share);
+	while (!given && count > 1 && found[count - 1].share < PEAK_SHARE * found->share)
+		count--;
+	m->count = count < MIXTURE_SOURCES ? count : MIXTURE_SOURCES;
+	m->count = given && given < m->count ? given : m->count;
+	memcpy(m->source, found, (size_t)m->count * sizeof *found);
+}
+
 int mixture_find(struct mixture *m, struct mixture_source source[MIXTURE_SOURCES])
 {
 	struct histogram_peak peak[HISTOGRAM_PEAKS];
@@ -267,10 +355,11 @@ int mixture_find(struct mixture *m, struct mixture_source source[MIXTURE_SOURCES
 	m->count = histogram_peaks(&m->histogram, given ? given : MIXTURE_SOURCES,
 		given ? 0 : PEAK_SHARE, peak);
 	for (int k = 0; k < m->count; k++)
-		m->source[k] = (struct mixture_source){
-			attenuation(ODDS * (2 * peak[k].i / CELLS - 1)),
-			m->reach * (2 * peak[k].j / CELLS - 1), peak[k].share
-		};
+		m->source[k] = source_of(&peak[k], 0, m->reach, 1);
+	if (m->reach > *REACH)
+		look_closer(m);
+	else
+		m->passed += CLOSER * (long)windows(m);
 	for (int i = 0; i < ROUNDS; i++)
 		refine(m);
 	make_paths(m);

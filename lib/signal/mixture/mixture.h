@@ -8,8 +8,11 @@
  * (Yilmaz, Rickard: Blind separation of speech mixtures via time-frequency masking, IEEE
  * Trans. Signal Process. 52, 2004).  The sources are peaks of the histogram of a - 1/a
  * and delta, weighted by |X1 X2|, over the frequencies at which no delay searched turns
- * the phase by more than half a turn; a_k and delta_k are fitted by least squares to the
- * points of each source; each point is assigned to the most likely source,
+ * the phase by more than half a turn.  Where delays of 16 samples are searched, these are
+ * so low that sources two samples apart are one peak: the points of each peak are counted
+ * again at higher frequencies, by their delay from it.  a_k and delta_k are fitted by
+ * least squares to the points of each source; each point is assigned to the most likely
+ * source,
  *
  *	least |a_k exp(-i w delta_k) X1 - X2|^2 / (1 + a_k^2),
  *
