@@ -427,7 +427,6 @@ static void take(struct bank *b, const struct row *r)
 	b->level = damage;
 	b->rows++;
 	weigh(b);
-	bend_loads(b);
 	breed(b);
 }
 
