@@ -183,13 +183,12 @@ void face_loads(struct bank *b, const struct row *r)
 		b->at[1 + k] = (r->sum[k] - b->load[k].taken) / (r->t - b->last);
 }
 
-/* Weighted means of dD/dt at the mean loads, and of its change with each f. */
-static double mean_rate(const struct bank *b, double mean[RATES], double change[RATES])
+/* From the weighted means of dD/dt at the mean loads, and of its change with f. */
+double bank_factor(const struct bank *b, int k)
 {
-	double rate = 0, line[LINE];
+	double mean[RATES], line[LINE], rate = 0, change = 0, last;
 
 	mean_loads(b, mean);
-	memset(change, 0, RATES * sizeof *change);
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
 		double scale = tr->weight * grown(tr, b->age) /
@@ -197,17 +196,8 @@ static double mean_rate(const struct bank *b, double mean[RATES], double change[
 
 		line_at(b, tr, mean, line);
 		rate += scale * line[LINE_V];
-		for (int k = 0; k < b->par.n_loads; k++)
-			change[1 + k] += scale * state_of(b, tr)[2 + k];
+		change += scale * state_of(b, tr)[2 + k];
 	}
-	return rate;
-}
-
-double bank_factor(const struct bank *b, int k)
-{
-	double change[RATES], mean[RATES],
-		rate = mean_rate(b, mean, change),
-		last = rate + change[1 + k] * (b->load[k].last - mean[1 + k]);
-
+	last = rate + change * (b->load[k].last - mean[1 + k]);
 	return rate > 0 && last > 0 ? last / rate : NAN;
 }
