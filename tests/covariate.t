@@ -88,7 +88,8 @@ goes() {
 				d += rate[t] / sum
 				printf "%d\t%.6f\t%g\n", t, d + 0.01 * normal(), load[t] } }'
 }
-# Error, width and intervals as by judge, at row 60 with a life of 40 ahead.
+# Error, width and intervals as by judge, at row 60 with a life of 40 ahead; lives end at the
+# horizon, ten times the age.
 for how in wanders alternates rises; do
 	for s in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16; do
 		goes $s $how >path.$how
@@ -98,7 +99,7 @@ for how in wanders alternates rises; do
 	done
 	for future in plain past mean; do
 		cat $future.[1-9] $future.1[0-6] | awk -F '\t' '$1 == 60 { e = $4 - 40; error += e < 0 ? -e : e
-			width += $5 - $3; miss += $3 > 40 || $5 < 40 } END { print error / 16, width / 16, miss + 0 }' >$future.$how
+			width += ($5 == "inf" ? 600 : $5) - $3; miss += $3 > 40 || $5 < 40 } END { print error / 16, width / 16, miss + 0 }' >$future.$how
 	done
 done
 # Of 16 intervals of 90 % four miss with a chance of 7 %.

@@ -427,7 +427,6 @@ static void take(struct bank *b, const struct row *r)
 	b->level = damage;
 	b->rows++;
 	weigh(b);
-	bend_loads(b);
 	breed(b);
 }
 
@@ -492,10 +491,10 @@ static void drop_outlier(struct bank *b)
 	b->n_held = kept;
 }
 
-/* What the trends, by weight, say of an observation: its density, and how many of them it
- * surprises. */
+/* What the trends, by weight, say of an observation: its density, how many of them it
+ * surprises, and how many foresee it no better than within the way to the threshold. */
 struct opinion {
-	double density, surprised;
+	double density, surprised, vague;
 };
 
 /* Of an observation of a damage, step after the last row. */
@@ -509,7 +508,7 @@ static struct opinion opinion_of(const struct bank *b, double damage, double ste
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
 		struct place seen;
-		double f, z, line[LINE];
+		double f, z, line[LINE], noise = tr->sum / freedom_of(b, tr);
 
 		if (tr->weight < 1e-6)
 			continue;
@@ -522,8 +521,10 @@ static struct opinion opinion_of(const struct bank *b, double damage, double ste
 		f = line[LINE_HH] + wander_of(b, tr, &seen, step) + squared_slope(seen);
 		z = (seen.h - line[LINE_H]) / sqrt(f);
 		sum.density += tr->weight * exp(log_density(b, tr, &seen, f, z));
-		if (!(z * z <= limit * tr->sum / freedom_of(b, tr))) /* or NAN */
+		if (!(z * z <= limit * noise)) /* or NAN */
 			sum.surprised += tr->weight;
+		if (f * noise > squared_slope(seen))
+			sum.vague += tr->weight;
 	}
 	return sum;
 }
@@ -607,14 +608,15 @@ double chance_of_jump(const struct bank *b)
 
 /* 1 if the machine was idle in a long gap of step: running does not explain the
  * observation, or explains it less well; or it has been repaired, which says nothing
- * against idleness. */
+ * against idleness.  Where it is not known what running would do, as after a first burst
+ * of readings, any other explanation seems better, and none is preferred. */
 static int was_idle(const struct bank *b, double damage, double step)
 {
 	struct opinion idle = opinion_of(b, damage, b->gap),
 		       running = opinion_of(b, damage, step);
 
 	return (damage < b->level && idle.surprised >= 0.9) || running.surprised >= 0.9 ||
-	       idle.density > running.density;
+	       (running.vague < 0.5 && idle.density > running.density);
 }
 
 /* The mean gap, halts included, as seen from a random time: of readings in bursts it is

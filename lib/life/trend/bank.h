@@ -20,10 +20,8 @@
  * lightest.
  *
  * Covariates (a load, a temperature) may scale the rate: with x at the row, the rate is
- * v + sum w_k f_k(x_k), f(x) = (e^{c (x - x_0)} - 1) / c, and every trend estimates its
- * own w along with h and v.  With two values of x this can be any dependence; in general
- * it is log-linear, because c follows the mean w / v.  A prior limits the effect, see
- * loads.c.
+ * v + sum w_k (x_k - x_0k), and every trend estimates its own w along with h and v.  With
+ * two values of x this can be any dependence.  A prior limits the effect, see loads.c.
  *
  * Trends and particles are averaged by the logarithm of their one-step predictive
  * densities, which fades with age as j / k; n rows count as sqrt(18 n), since they are

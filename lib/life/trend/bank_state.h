@@ -47,7 +47,6 @@ enum { LINE_H, LINE_V, LINE_HH, LINE_HV, LINE_VH, LINE_VV, LINE };
 struct load {
 	double origin, unit; /* x_0, and the first distance from it */
 	double most;         /* the largest one, in units */
-	double bend;         /* c, per unit */
 	double last;         /* f at the last row */
 	double sum;          /* of f times the time, without the idle time */
 	double taken;        /* sum at the last row that was taken */
@@ -164,8 +163,6 @@ void future_loads(
 /* Sets the loads to their means between the last row taken and this one, and the priors
  * to what is known by then. */
 void face_loads(struct bank *b, const struct row *r);
-/* Sets the bends to the effects learnt so far. */
-void bend_loads(struct bank *b);
 
 /* The way along the present rate in a step, which is longer where the rate grows. */
 double advance_of(const struct bank *b, const struct trend *tr, double step);

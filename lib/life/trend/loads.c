@@ -11,23 +11,10 @@
  * 1, 3 and 9, 640 paths each: without a covariate 6.9, 11.0, 15.5; 0.5: 7.2, 9.4, 13.8;
  * 1: 7.4, 9.4, 13.3; 2: 7.6, 9.6, 13.6; 4: 7.8, 9.9, 14.0. */
 static const double EFFECT = 1;
-/* The largest bend: a factor of e^3 = 20 at that distance.  Without bends these CRPS,
- * with EFFECT 2, are 7.6, 9.3 and 12.4 if the future covariate is its mean, but 8.4, 13.0
- * and 23.1 instead of 8.2, 12.2 and 19.4 if it is its last value. */
-static const double BEND = 3;
 
 static double effect(const struct load *l, double x)
 {
-	double far = (x - l->origin) / l->unit;
-
-	return l->bend != 0 ? expm1(fmin(100, l->bend * far)) / l->bend : far;
-}
-
-static void bend(struct load *l, double to)
-{
-	double most = l->most > 0 ? BEND / l->most : 0;
-
-	l->bend = fmax(-most, fmin(most, to));
+	return (x - l->origin) / l->unit;
 }
 
 /* Extends the integrals over f, which has its last value from one time to another. */
@@ -95,7 +82,6 @@ void bank_load(struct bank *b, double t, const double *x)
 		if (l->most == 0 && far > 0)
 			l->unit = far;
 		l->most = fmax(l->most, far / l->unit);
-		bend(l, l->bend);
 		l->last = effect(l, x[k]);
 		if (b->loaded) {
 			extend(l, b->loaded_to - b->loaded_from, t - b->loaded_from);
@@ -158,11 +144,10 @@ void future_loads(
 static double largest_effect(const struct bank *b, int k)
 {
 	const struct load *l = &b->load[k];
-	double far = l->most * l->unit;
 
-	if (far == 0 && b->par.load[k].future == BANK_VALUE)
-		far = fabs(b->par.load[k].value - l->origin);
-	return fmax(fabs(effect(l, l->origin + far)), fabs(effect(l, l->origin - far)));
+	if (l->most == 0 && b->par.load[k].future == BANK_VALUE)
+		return fabs(effect(l, b->par.load[k].value));
+	return l->most;
 }
 
 /* The priors of a trend follow its mean rate and the largest effects: an observation of
@@ -198,13 +183,12 @@ void face_loads(struct bank *b, const struct row *r)
 		b->at[1 + k] = (r->sum[k] - b->load[k].taken) / (r->t - b->last);
 }
 
-/* Weighted means of dD/dt at the mean loads, and of its change with each f. */
-static double mean_rate(const struct bank *b, double mean[RATES], double change[RATES])
+/* From the weighted means of dD/dt at the mean loads, and of its change with f. */
+double bank_factor(const struct bank *b, int k)
 {
-	double rate = 0, line[LINE];
+	double mean[RATES], line[LINE], rate = 0, change = 0, last;
 
 	mean_loads(b, mean);
-	memset(change, 0, RATES * sizeof *change);
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
 		double scale = tr->weight * grown(tr, b->age) /
@@ -212,31 +196,8 @@ static double mean_rate(const struct bank *b, double mean[RATES], double change[
 
 		line_at(b, tr, mean, line);
 		rate += scale * line[LINE_V];
-		for (int k = 0; k < b->par.n_loads; k++)
-			change[1 + k] += scale * state_of(b, tr)[2 + k];
+		change += scale * state_of(b, tr)[2 + k];
 	}
-	return rate;
-}
-
-/* In v + w f the derivative of the logarithm of the rate is the bend, if that is right.
- */
-void bend_loads(struct bank *b)
-{
-	double change[RATES], mean[RATES], rate;
-
-	if (b->par.n_loads == 0)
-		return;
-	rate = mean_rate(b, mean, change);
-	for (int k = 0; k < b->par.n_loads && rate > 0; k++)
-		bend(&b->load[k],
-			change[1 + k] * (1 + b->load[k].bend * mean[1 + k]) / rate);
-}
-
-double bank_factor(const struct bank *b, int k)
-{
-	double change[RATES], mean[RATES],
-		rate = mean_rate(b, mean, change),
-		last = rate + change[1 + k] * (b->load[k].last - mean[1 + k]);
-
+	last = rate + change * (b->load[k].last - mean[1 + k]);
 	return rate > 0 && last > 0 ? last / rate : NAN;
 }
