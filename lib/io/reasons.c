@@ -34,13 +34,16 @@ const char *reasons_text(struct reasons *r)
 	return r->text;
 }
 
-const char *reasons_warn(struct reasons *r, const char *name)
+const char *reasons_tell(const char *name, const char *why)
 {
-	const char *why = reasons_text(r);
-
 	if (why)
 		warn("%s: doubtful by its own account: %s", name, why);
 	return why;
+}
+
+const char *reasons_warn(struct reasons *r, const char *name)
+{
+	return reasons_tell(name, reasons_text(r));
 }
 
 void reasons_free(struct reasons *r)

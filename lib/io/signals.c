@@ -11,6 +11,7 @@
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/kinds.h"
+#include "io/reasons.h"
 #include "num/bytes.h"
 #include "num/crc32.h"
 #include <ctype.h>
@@ -420,11 +421,7 @@ size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 
 const char *signal_doubted(const struct signal_in *in)
 {
-	const char *why = in->format.doubt;
-
-	if (why)
-		warn("%s: doubtful by its own account: %s", in->name, why);
-	return why;
+	return reasons_tell(in->name, in->format.doubt);
 }
 
 void signal_close(struct signal_in *in)

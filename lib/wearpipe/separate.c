@@ -121,6 +121,10 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 			    "common";
 	else if (doubt == SEPARATE_COVERED)
 		s->reason = "events that are no particles hide some of them";
+	else if (doubt == SEPARATE_LINES)
+		s->reason =
+			"what interfering lines leave is taken for noise: particles may "
+			"be missing";
 	else if (doubt == SEPARATE_UNLIKE)
 		s->reason = "what is unresolved differs from the pulse in spectrum";
 	else if (doubt == SEPARATE_COUNTLESS)

@@ -141,6 +141,10 @@ static int is_doubtful(
 	      : doubt == SEPARATE_UNEXPLAINED
 		      ? xprintf("a channel stands out of its noise, but they have nothing "
 				"in common")
+	      : doubt == SEPARATE_LINES
+		      ? xprintf("its interfering lines change too fast to be followed, and "
+				"what they leave is taken for noise: particles may be "
+				"missing")
 	      : doubt == SEPARATE_UNLIKE
 		      ? xprintf("what is unresolved differs from the pulse in spectrum, "
 				"by %.0f %%: number and size there are not known",
@@ -158,7 +162,7 @@ static int is_doubtful(
 	if ((doubt == SEPARATE_NOISE && !kept) || doubt == SEPARATE_CHANGED ||
 		doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
 		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE ||
-		doubt == SEPARATE_COUNTLESS)
+		doubt == SEPARATE_LINES || doubt == SEPARATE_COUNTLESS)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

@@ -67,6 +67,8 @@ struct calibration {
 	double tone_power[TONES_MAX]; /* on channel 1, units of noise^2 */
 	double tone_variance; /* of what interpolation leaves of a coefficient, units of
 				 noise^2 */
+	int lines_in_noise;   /* 1: what the tones leave is taken for noise, and more than
+				 it */
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */

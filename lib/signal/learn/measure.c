@@ -525,8 +525,16 @@ static enum separate_status look_for_crowd(
 	return SEPARATE_OK;
 }
 
+/* 1 if the lines, which changed faster than they were followed, leave more power than the
+ * noise. */
+static int lines_are_left(const struct calibration *c)
+{
+	return c->tones > 0 && isfinite(c->tone_variance) &&
+	       c->tones * c->tone_variance > 1;
+}
+
 /* Otherwise neither the shape nor white noise describes the record: it was filtered.  The
- * noise is then measured behind the matched filter. */
+ * noise is then measured behind the matched filter, with what lines leave. */
 static enum separate_status learn_filtered(struct record *rec, struct calibration *c)
 {
 	double n1, n2;
@@ -534,6 +542,7 @@ static enum separate_status learn_filtered(struct record *rec, struct calibratio
 	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
 		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
 		return SEPARATE_MEMORY;
+	c->lines_in_noise = lines_are_left(c);
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
 	return learn(rec, NULL, c);

@@ -395,6 +395,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_FOREIGN;
 	if (s->was_foreign)
 		return SEPARATE_CHANGED;
+	if (s->cal.lines_in_noise)
+		return SEPARATE_LINES;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;
 	if (c->countless > COVERED * c->samples)

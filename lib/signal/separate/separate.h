@@ -174,6 +174,7 @@ enum separate_doubt {
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_LINES,      /* what lines leave was taken for noise */
 	SEPARATE_COUNTLESS,  /* what is unresolved may be any number of particles */
 	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
