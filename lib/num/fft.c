@@ -105,7 +105,7 @@ static int planner_fits(size_t nx, size_t ny)
 	return room != NULL;
 }
 
-struct fft *fft_new(size_t nx, size_t ny)
+static struct fft *plan(size_t nx, size_t ny, int both)
 {
 	struct fft *fft = calloc(1, sizeof *fft);
 	double *x = fft_alloc(nx * ny);
@@ -115,16 +115,27 @@ struct fft *fft_new(size_t nx, size_t ny)
 		pthread_mutex_lock(&planner);
 		fft->forward = fftw_plan_dft_r2c_2d(
 			(int)ny, (int)nx, x, spectrum, FFTW_ESTIMATE);
-		fft->inverse = fftw_plan_dft_c2r_2d(
-			(int)ny, (int)nx, spectrum, x, FFTW_ESTIMATE);
+		if (both)
+			fft->inverse = fftw_plan_dft_c2r_2d(
+				(int)ny, (int)nx, spectrum, x, FFTW_ESTIMATE);
 		pthread_mutex_unlock(&planner);
 	}
 	fft_free(x);
 	fft_free(spectrum);
-	if (fft && fft->forward && fft->inverse)
+	if (fft && fft->forward && (fft->inverse || !both))
 		return fft;
 	fft_done(fft);
 	return NULL;
+}
+
+struct fft *fft_new(size_t nx, size_t ny)
+{
+	return plan(nx, ny, 1);
+}
+
+struct fft *fft_new_forward(size_t n)
+{
+	return plan(n, 1, 0);
 }
 
 void fft_forward(const struct fft *fft, const double *x, double complex *spectrum)

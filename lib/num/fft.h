@@ -39,6 +39,8 @@ size_t fft_fast_size(size_t n);
  * ny rows of nx / 2 + 1 coefficients.  The inverse destroys its input. */
 struct fft;
 struct fft *fft_new(size_t nx, size_t ny);
+/* Of one row, without the inverse: a plan takes longer than a short transform. */
+struct fft *fft_new_forward(size_t n);
 void fft_forward(const struct fft *fft, const double *x, double complex *spectrum);
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
 void fft_done(struct fft *fft);

@@ -11,7 +11,7 @@ struct periodogram *periodogram_new(size_t size)
 	if (!p)
 		return NULL;
 	p->size = size;
-	p->fft = fft_new(size, 1);
+	p->fft = fft_new_forward(size);
 	p->x = fft_alloc(size);
 	p->spectrum = fft_alloc_complex(size / 2 + 1);
 	if (p->fft && p->x && p->spectrum)

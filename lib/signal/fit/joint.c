@@ -155,18 +155,39 @@ struct pursuit {
 	double gain[LATEST];
 };
 
+/* 1 if more than noise is left where chi-square falls by this much. */
+static int leaves_more(const struct joint *j, double by)
+{
+	double dof = fmax(degrees(j) - PAR * j->m, 1);
+
+	return j->result.chi2 - by >
+	       dof * (1 + CHI_SQUARE_MORE) + SIGMAS_NEVER * sqrt(2 * dof);
+}
+
 /* 1 if as many more pulses as there may be leave more than noise although each of them
  * reduces chi-square by as much as the best of the latest: the clearest are found first.
  */
 static int is_hopeless(const struct joint *j, const struct pursuit *p)
 {
-	double dof = fmax(degrees(j) - PAR * j->m, 1), most = 0;
+	double most = 0;
 
 	for (int i = 0; i < LATEST; i++)
 		most = fmax(most, p->gain[i]);
-	return p->found >= LATEST &&
-	       j->result.chi2 - (j->scene.max_pulses - j->m) * most >
-		       dof * (1 + CHI_SQUARE_MORE) + SIGMAS_NEVER * sqrt(2 * dof);
+	return p->found >= LATEST && leaves_more(j, (j->scene.max_pulses - j->m) * most);
+}
+
+/* 1 if half of what the pulses leave, beside what the error of their shape explains, is
+ * more than noise: no other arrangement of them will describe it.  Exchanging, merging
+ * and removing pulses halved what was left in 13 of 2500 such fits and left noise in none
+ * (three records of random instruments and one of 200 particles a second), and took two
+ * thirds of the time of one of them. */
+static int is_beyond(const struct joint *j)
+{
+	double energy = 0;
+
+	for (int i = 0; i < j->m; i++)
+		energy += j->pulse[i].a * j->pulse[i].a * joint_energy(&j->scene);
+	return leaves_more(j, 0.5 * j->result.chi2 + j->scene.misfit * energy);
 }
 
 /* Adds pulses one by one; 1 if that is hopeless. */
@@ -224,21 +245,23 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 
 	if (status != JOINT_OK)
 		return status;
+	for (int i = 0; i < j->m; i++)
+		j->pulse[i].exchange = 0;
 	joint_fit_all(j);
 	do {
 		hopeless = add_pulses(j, &pursuit);
 		joint_fit_all(j);
 	} while (!hopeless && joint_split_pulses(j));
 	full = s->give_up && are_more(j);
-	if (!full) {
+	if (!full && !is_beyond(j)) {
 		joint_swap_pulses(j);
 		joint_merge_pulses(j);
 		joint_prune(j);
 		joint_fit_all(j);
 		joint_prune_relaxed(j);
 		joint_forget_moved(j);
-		full = are_more(j);
 	}
+	full = full || are_more(j);
 	*m = j->m;
 	finish(j, full, pulses, result);
 	return JOINT_OK;

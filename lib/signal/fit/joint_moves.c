@@ -276,8 +276,6 @@ void joint_forget_moved(struct joint *j)
 void joint_swap_pulses(struct joint *j)
 {
 	for (int i = 0; i < j->m; i++)
-		j->pulse[i].exchange = 0;
-	for (int i = 0; i < j->m; i++)
 		for (int k = i + 1; k < j->m; k++)
 			try_swap(j, i, k);
 }

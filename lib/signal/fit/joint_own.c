@@ -121,7 +121,7 @@ static void measure(
 		for (size_t k = 0; k < n; k++)
 			p.inverse[i * NPAR + k] = product(j, x[i], x[k]);
 		memcpy(move, by, (size_t)np * sizeof *by);
-		joint_solve(j, np, 0, move);
+		joint_solve(j, np, move);
 	}
 	for (size_t i = 0; i < n; i++)
 		for (size_t k = 0; k < n; k++)

@@ -12,9 +12,9 @@
 /* The gaps of the table, in durations: from none by a factor of sqrt 2. */
 static double knot(int k)
 {
-	static const double first = 0.0125;
+	static const double first[] = { 0.0125, 0.0125 * M_SQRT2 };
 
-	return k ? first * exp2(0.5 * (k - 1)) : 0;
+	return k ? first[(k - 1) % 2] * (1 << (k - 1) / 2) : 0;
 }
 
 /* What two equal pulses a gap apart put on channel c beside one, pulse i, at their
@@ -53,6 +53,7 @@ void joint_pair_start(struct joint *j, int i, const int *set, int m)
 	size_t n[PAIR_KNOTS];
 	int nb = 2 * j->basis;
 
+	_Static_assert(PAIR_KNOTS % 3 == 0, "three knots are reduced together");
 	memset(t, 0, sizeof *t);
 	for (int a = 0; a < PAIR_KNOTS; a++) {
 		int c = a / PAIR_GAPS, k = a % PAIR_GAPS;
@@ -74,11 +75,17 @@ void joint_pair_start(struct joint *j, int i, const int *set, int m)
 				     dot(along_basis[a], j->bq + u * nb + c * j->basis,
 					     (size_t)j->basis);
 		}
-		joint_reduce(j, PAR * m, 0, seen[a]);
+		if (a % 3 == 2)
+			joint_reduce(j, PAR * m, 0,
+				(double *[]){ seen[a - 2], seen[a - 1], seen[a] });
+	}
+	for (int a = 0; a < PAIR_KNOTS; a++) {
+		const double *x = j->excess + (size_t)a * j->support;
+
 		for (int b = 0; b <= a; b++) {
 			double shared = 0;
 
-			if (b / PAIR_GAPS == c)
+			if (b / PAIR_GAPS == a / PAIR_GAPS)
 				shared = dot_within(x, n[a],
 						 j->excess + (size_t)b * j->support, n[b],
 						 first[a] - first[b]) -
@@ -147,6 +154,10 @@ void joint_pair_odds(struct joint *j, int i, double scatter, double odds[JOINT_S
 	/* Steps of the difference of two delays, in standard deviations. */
 	static const double step = 0.6;
 	enum { STEPS = 4 };
+	double density[2 * STEPS + 1];
+
+	for (int d = -STEPS; d <= STEPS; d++)
+		density[STEPS + d] = step * exp(-0.5 * pow(d * step, 2)) / sqrt(2 * M_PI);
 	for (int w = 0; w < JOINT_SHARES; w++)
 		odds[w] = 0;
 	if (i >= j->inverted)
@@ -162,12 +173,11 @@ void joint_pair_odds(struct joint *j, int i, double scatter, double odds[JOINT_S
 			width = k ? width : knot(1);
 			for (int d = -STEPS; d <= STEPS; d++) {
 				double apart = d * step * scatter / j->scene.duration;
-				double density = step * exp(-0.5 * pow(d * step, 2)) /
-						 sqrt(2 * M_PI);
 				double ratio = pair_ratio(j, narrow * fabs(gap),
 					narrow * fabs(gap + apart));
 
-				odds[w] += density * width * exp(fmin(ratio, 50));
+				odds[w] +=
+					density[STEPS + d] * width * exp(fmin(ratio, 50));
 			}
 		}
 	}

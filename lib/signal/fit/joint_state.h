@@ -162,10 +162,10 @@ void joint_fit_all(struct joint *j); /* sets chi-square */
 /* Covariances from the inverse of the undamped normal matrix. */
 void joint_fill_covariance(struct joint *j);
 
-/* x becomes L^-1 x by the last factor, from row start on (x is zero above). */
-void joint_reduce(const struct joint *j, int np, int start, double *x);
-/* The same of L L^T. */
-void joint_solve(const struct joint *j, int np, int start, double *x);
+/* Each x becomes L^-1 x by the last factor, from row start on (x is zero above). */
+void joint_reduce(const struct joint *j, int np, int start, double *const x[3]);
+/* x becomes (L L^T)^-1 x. */
+void joint_solve(const struct joint *j, int np, double *x);
 
 /* Factor of the normal matrix of the pulses in set, with their columns. */
 enum num_status joint_factorise(struct joint *j, const int *set, int m);

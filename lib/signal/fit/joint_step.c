@@ -97,18 +97,27 @@ static enum num_status factorise(struct joint *j, size_t np, double lambda)
 	return cholesky_factor(j->factor, np, np, 1e-13);
 }
 
-void joint_reduce(const struct joint *j, int np, int start, double *x)
+void joint_reduce(const struct joint *j, int np, int start, double *const x[3])
 {
+	const double *from[] = { x[0] + start, x[1] + start, x[2] + start };
+	double part[3];
+
 	for (int i = start; i < np; i++) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
 
-		x[i] = (x[i] - dot(row + start, x + start, (size_t)(i - start))) / row[i];
+		dot3(row + start, from, (size_t)(i - start), part);
+		for (int k = 0; k < 3; k++)
+			x[k][i] = (x[k][i] - part[k]) / row[i];
 	}
 }
 
-void joint_solve(const struct joint *j, int np, int start, double *x)
+void joint_solve(const struct joint *j, int np, double *x)
 {
-	joint_reduce(j, np, start, x);
+	for (int i = 0; i < np; i++) {
+		const double *row = j->factor + (size_t)i * (size_t)np;
+
+		x[i] = (x[i] - dot(row, x, (size_t)i)) / row[i];
+	}
 	for (int i = np - 1; i >= 0; i--) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
 
@@ -251,7 +260,7 @@ double joint_fit_set(
 			continue;
 		}
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
-		joint_solve(j, PAR * m, 0, j->move);
+		joint_solve(j, PAR * m, j->move);
 		step_forth(j, set, m, &old);
 		after = joint_chi_square(j);
 		if (after < chi2) {
@@ -289,19 +298,24 @@ void joint_fill_covariance(struct joint *j)
 {
 	int m = j->m, np = PAR * m;
 	int good = joint_factorise(j, j->all, m) == NUM_OK;
-	double x[NPAR];
+	double x[PAR][NPAR];
 
 	j->inverted = good ? m : 0;
-	for (int i = 0; i < m; i++)
-		for (int u = 0, k = 0; u < PAR; u++) {
-			if (good) {
-				memset(x, 0, sizeof(double) * (size_t)np);
-				x[PAR * i + u] = 1;
-				joint_solve(j, np, PAR * i + u, x);
-			}
+	/* The inverse of L L^T has the inner products of the columns of that of L. */
+	for (int i = 0; i < m; i++) {
+		size_t below = (size_t)(np - PAR * i);
+
+		memset(x, 0, sizeof x);
+		for (int u = 0; u < PAR && good; u++)
+			x[u][PAR * i + u] = 1;
+		if (good)
+			joint_reduce(j, np, PAR * i, (double *[]){ x[0], x[1], x[2] });
+		for (int u = 0, k = 0; u < PAR; u++)
 			for (int v = 0; v <= u; v++)
-				j->pulse[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
-		}
+				j->pulse[i].cov[k++] =
+					good ? dot(x[u] + PAR * i, x[v] + PAR * i, below)
+					     : INFINITY;
+	}
 }
 
 void joint_gain_error(const struct joint *j, double *share, double *se)

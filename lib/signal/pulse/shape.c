@@ -322,46 +322,61 @@ static inline void store(double *x, const lanes4 *v, size_t m)
 		x[2] = (*v)[2];
 }
 
+/* A pulse as shape_sample() takes it: cell rate i + x0 is that of sample i. */
+struct sampling {
+	const double *cubic;
+	double rate, start, x0, inverse;
+	int last; /* cell */
+};
+
+/* The first m of four samples from i on. */
+static ALWAYS_INLINE void sample_four(const struct sampling *s, size_t i, size_t m,
+	double *p, double *by_t0, double *by_T)
+{
+	lanes4 at = (double)(long)i + (lanes4){ 0, 1, 2, 3 }, x = s->x0 + s->rate * at;
+	lanes4_int cell = __builtin_convertvector(x, lanes4_int), from = 4 * cell;
+	lanes4 u = x - __builtin_convertvector(cell, lanes4), c0, c1, c2, c3, y;
+	lanes4 r0, r1, r2, r3, even, odd;
+	const int last = 4 * s->last;
+
+	memcpy(&r0, s->cubic + from[0], sizeof r0);
+	memcpy(&r1, s->cubic + (m < 4 ? lesser_int(from[1], last) : from[1]), sizeof r1);
+	memcpy(&r2, s->cubic + (m < 4 ? lesser_int(from[2], last) : from[2]), sizeof r2);
+	memcpy(&r3, s->cubic + (m < 4 ? lesser_int(from[3], last) : from[3]), sizeof r3);
+	/* four rows to four columns */
+	even = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
+	odd = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
+	c0 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
+	c2 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
+	even = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+	odd = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+	c1 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
+	c3 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
+	y = c0 + u * (c1 + u * (c2 + u * c3));
+	store(p + i, &y, m);
+	if (!by_t0 && !by_T)
+		return;
+	y = -s->rate * (c1 + u * (2 * c2 + u * 3 * c3));
+	if (by_t0)
+		store(by_t0 + i, &y, m);
+	y *= (s->start + at) * s->inverse;
+	if (by_T)
+		store(by_T + i, &y, m);
+}
+
 /* Samples begin to end of shape_sample(), all of them within the cells. */
 LANES_CLONES static void sample_inside(const struct shape *shape, double t0, double T,
 	long first, size_t begin, size_t end, double *p, double *by_t0, double *by_T)
 {
 	const double rate = 1 / (T * shape->step), start = (double)first - t0;
-	const double x0 = (start + shape->reach * T) * rate;
-	const double *c = shape->cubic;
-	const int last = shape->cells - 1;
+	const struct sampling s = { shape->cubic, rate, start,
+		(start + shape->reach * T) * rate, 1 / T, shape->cells - 1 };
+	size_t i = begin;
 
-	for (size_t i = begin; i < end; i += 4) {
-		size_t m = end - i < 4 ? end - i : 4;
-		lanes4 at = (double)(long)i + (lanes4){ 0, 1, 2, 3 }, x = x0 + rate * at;
-		lanes4_int cell = __builtin_convertvector(x, lanes4_int);
-		lanes4 u = x - __builtin_convertvector(cell, lanes4), c0, c1, c2, c3, y;
-		lanes4 r0, r1, r2, r3, even, odd;
-
-		memcpy(&r0, c + 4 * cell[0], sizeof r0);
-		memcpy(&r1, c + 4 * lesser_int(cell[1], last), sizeof r1);
-		memcpy(&r2, c + 4 * lesser_int(cell[2], last), sizeof r2);
-		memcpy(&r3, c + 4 * lesser_int(cell[3], last), sizeof r3);
-		/* four rows to four columns */
-		even = __builtin_shufflevector(r0, r1, 0, 4, 2, 6);
-		odd = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
-		c0 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
-		c2 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
-		even = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
-		odd = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-		c1 = __builtin_shufflevector(even, odd, 0, 1, 4, 5);
-		c3 = __builtin_shufflevector(even, odd, 2, 3, 6, 7);
-		y = c0 + u * (c1 + u * (c2 + u * c3));
-		store(p + i, &y, m);
-		if (!by_t0 && !by_T)
-			continue;
-		y = -rate * (c1 + u * (2 * c2 + u * 3 * c3));
-		if (by_t0)
-			store(by_t0 + i, &y, m);
-		y *= (start + at) * (1 / T);
-		if (by_T)
-			store(by_T + i, &y, m);
-	}
+	for (; i + 4 <= end; i += 4)
+		sample_four(&s, i, 4, p, by_t0, by_T);
+	if (i < end)
+		sample_four(&s, i, end - i, p, by_t0, by_T);
 }
 
 void shape_sample(const struct shape *shape, double t0, double T, long first, size_t n,
