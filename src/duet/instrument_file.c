@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 /* Of the rows and their meaning. */
-static const char *const version = "6";
+static const char *const version = "7";
 
 static uint32_t add(uint32_t crc, double value)
 {
@@ -46,8 +46,9 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 	const struct calibration *c = &in->cal;
 	const struct flow *f = &in->flow;
 	double rate = place->rate / in->ratio;
-	double delay = ((double)c->shift + f->mean) / rate;
+	double delay = ((double)c->shift + f->mean + c->origin) / rate;
 	double v = place->spacing / delay, spread = sqrt(f->var) / rate / delay;
+	double common = c->origin_se / rate / delay;
 
 	table_comment(t, "noise", "%.6g V, %.6g V", c->noise[0], c->noise[1]);
 	table_comment(t, "pulse", "%.6g s, gain %.6g, width %.6g, from %d pulses",
@@ -58,7 +59,8 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 		table_comment(t, "velocity",
 			"%.6g +- %.2g m/s of the flow, +- %.2g m/s of a particle, from "
 			"%.0f",
-			v, v * spread / sqrt(f->count), v * spread, f->count);
+			v, v * hypot(spread / sqrt(f->count), common), v * spread,
+			f->count);
 }
 
 void instrument_write(const struct instrument_place *place, const struct instrument *in)

@@ -82,6 +82,10 @@ struct calibration {
 	double drift; /* change of the logarithm of the gain, which is that at the middle
 			 of what is learned from, per sample */
 	double width; /* of the pulses of sensor 2, over those of sensor 1 */
+	/* Samples by which the delay of a particle of the mean velocity exceeds that of
+	 * the fit, see origin.h, and the standard error, which all particles have in
+	 * common. */
+	double origin, origin_se;
 	double crosstalk[2]; /* share of the other channel in either, with the sign of
 				sensor 2 as separated */
 	double transit;      /* samples between the sensors; INFINITY if unknown */

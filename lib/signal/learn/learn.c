@@ -5,6 +5,7 @@
 #include "signal/learn/correct.h"
 #include "signal/learn/crowd.h"
 #include "signal/learn/examples.h"
+#include "signal/learn/origin.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -714,6 +715,9 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	}
 	if (status == SEPARATE_OK && ex.count && wants_correction(&ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
+		status = SEPARATE_MEMORY;
+	if (status == SEPARATE_OK && ex.count && c->width != 1 &&
+		find_origin(&ex, c) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && ex.count && !isinf(c->transit)) {
 		examples_crosstalk(&ex, c->crosstalk);

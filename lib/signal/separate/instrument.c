@@ -143,6 +143,8 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "duration", SHAPE_SHORTEST, &c->duration, 1);
 	visit_gain(w, &c->gain);
 	reals(w, "width", DBL_MIN, &c->width, 1);
+	reals(w, "origin", -INFINITY, &c->origin, 1);
+	reals(w, "origin_se", 0, &c->origin_se, 1);
 	reals(w, "crosstalk", -1, c->crosstalk, 2);
 	reals(w, "transit", DBL_MIN, &c->transit, 1);
 	reals(w, "delta_min", -INFINITY, &c->delta_min, 1);

@@ -33,6 +33,17 @@ static void tell_phase(
 			size;
 }
 
+/* Adds the origin of the pulses of sensor 2 (origin.h), which goes with the duration. */
+static void add_origin(const struct calibration *c, double delta, struct transit *out)
+{
+	double longer = 1 + delta / c->transit, alone = out->delay_se;
+
+	out->t2 += longer * c->origin;
+	out->t2_se = hypot(out->t2_se, longer * c->origin_se);
+	out->delay_se = hypot(alone, longer * c->origin_se);
+	out->correlation *= alone / out->delay_se;
+}
+
 static enum separate_status emit_pulse(struct separate *s, const struct joint_pulse *p,
 	long long from, int sources, double chi2, enum separate_verdict verdict)
 {
@@ -55,6 +66,7 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
 	if (s->with_both)
 		tell_phase(s, (int)(p - s->pulse), from, out);
+	add_origin(&s->cal, p->delta, out);
 	out->chi2 = chi2;
 	/* Beside its neighbours it may be none: two such pulses of opposite sign change
 	 * the width of one.  In 193 random records eight rows are so small, and three of
