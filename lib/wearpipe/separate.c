@@ -125,6 +125,10 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 		s->reason =
 			"what interfering lines leave is taken for noise: particles may "
 			"be missing";
+	else if (doubt == SEPARATE_WIDTHS)
+		s->reason =
+			"widths of pulses differ by more than those of particles: they may "
+			"be bubbles";
 	else if (doubt == SEPARATE_UNLIKE)
 		s->reason = "what is unresolved differs from the pulse in spectrum";
 	else if (doubt == SEPARATE_COUNTLESS)

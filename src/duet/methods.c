@@ -108,66 +108,84 @@ static int put_ready(struct early *e, struct found *out)
 	return any;
 }
 
+/* Why the record is doubtful. */
+static char *reason(
+	const struct separate *s, enum separate_doubt doubt, const struct found *out)
+{
+	const struct separate_counters *c = separate_counters(s);
+	double share[2];
+
+	switch (doubt) {
+	case SEPARATE_BELIEVED:
+		return NULL;
+	case SEPARATE_FOREIGN:
+		return xprintf("%.0f of %.0f rows fit no particle", separate_misfits(c),
+			separate_tested(c));
+	case SEPARATE_NOISE:
+		separate_noise(s, share);
+		return xprintf("the noise is %.3g and %.3g times that of the instrument",
+			share[0], share[1]);
+	case SEPARATE_CHANGED:
+		return xprintf("more than a tenth of the rows before the instrument was "
+			       "learned again are doubted: the others there are "
+			       "doubtful, too");
+	case SEPARATE_COVERED:
+		return xprintf("events that are no particles cover %.2g %% of it, and "
+			       "hide the particles there",
+			100 * c->covered / c->samples);
+	case SEPARATE_UNLEARNED:
+		return xprintf("nothing could be learned from its first %.3g s, in which "
+			       "a channel stands out of its noise: particles there, if "
+			       "any, are missing",
+			c->passed_over * separate_ratio(s) / (double)out->rate);
+	case SEPARATE_UNEXPLAINED:
+		return xprintf("a channel stands out of its noise, but they have nothing "
+			       "in common");
+	case SEPARATE_LINES:
+		return xprintf(
+			"its interfering lines change too fast to be followed, and "
+			"what they leave is taken for noise: particles may be "
+			"missing");
+	case SEPARATE_WIDTHS:
+		return xprintf("the widths of its pulses differ from those of their "
+			       "velocities by more than those of particles: they may be "
+			       "bubbles");
+	case SEPARATE_UNLIKE:
+		return xprintf("what is unresolved differs from the pulse in spectrum, "
+			       "by %.0f %%: number and size there are not known",
+			100 * sqrt(c->unlike / c->compared));
+	case SEPARATE_COUNTLESS:
+		return xprintf(
+			"number and size of the particles in %.0f %% of it are not "
+			"known: it is unresolved, and too short or too much like "
+			"noise to count them",
+			100 * c->countless / c->samples);
+	case SEPARATE_REVERSED:
+		return xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows);
+	case SEPARATE_CROWD:
+		return xprintf(
+			"%.0f %% of it is unresolved, unlike the record of the instrument",
+			100 * c->dense / c->samples);
+	}
+	return NULL;
+}
+
 /* Says so, and so do the tables. */
 static int is_doubtful(
 	const struct separate *s, struct found *out, const char *name, const char *kept)
 {
-	const struct separate_counters *c = separate_counters(s);
 	enum separate_doubt doubt = separate_doubtful(s);
-	double share[2];
-	char *why;
+	char *why = reason(s, doubt, out);
 
-	if (doubt == SEPARATE_BELIEVED)
+	if (!why)
 		return 0;
-	separate_noise(s, share);
-	why = doubt == SEPARATE_FOREIGN ? xprintf("%.0f of %.0f rows fit no particle",
-						  separate_misfits(c), separate_tested(c))
-	      : doubt == SEPARATE_NOISE
-		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
-				share[0], share[1])
-	      : doubt == SEPARATE_CHANGED
-		      ? xprintf("more than a tenth of the rows before the instrument was "
-				"learned again are doubted: the others there are "
-				"doubtful, too")
-	      : doubt == SEPARATE_COVERED
-		      ? xprintf("events that are no particles cover %.2g %% of it, and "
-				"hide the particles there",
-				100 * c->covered / c->samples)
-	      : doubt == SEPARATE_UNLEARNED
-		      ? xprintf("nothing could be learned from its first %.3g s, in which "
-				"a channel stands out of its noise: particles "
-				"there, if any, are missing",
-				c->passed_over * separate_ratio(s) / (double)out->rate)
-	      : doubt == SEPARATE_UNEXPLAINED
-		      ? xprintf("a channel stands out of its noise, but they have nothing "
-				"in common")
-	      : doubt == SEPARATE_LINES
-		      ? xprintf("its interfering lines change too fast to be followed, and "
-				"what they leave is taken for noise: particles may be "
-				"missing")
-	      : doubt == SEPARATE_UNLIKE
-		      ? xprintf("what is unresolved differs from the pulse in spectrum, "
-				"by %.0f %%: number and size there are not known",
-				100 * sqrt(c->unlike / c->compared))
-	      : doubt == SEPARATE_COUNTLESS
-		      ? xprintf("number and size of the particles in %.0f %% of it are not "
-				"known: it is unresolved, and too short or too much "
-				"like noise to count them",
-				100 * c->countless / c->samples)
-	      : doubt == SEPARATE_REVERSED
-		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
-		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
-				"instrument",
-				100 * c->dense / c->samples);
-	if ((doubt == SEPARATE_NOISE && !kept) || doubt == SEPARATE_CHANGED ||
-		doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
-		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE ||
-		doubt == SEPARATE_LINES || doubt == SEPARATE_COUNTLESS)
-		warn("%s: %s", name, why);
-	else if (kept)
+	if (doubt == SEPARATE_FOREIGN && !kept)
+		warn("%s: %s (misfit): the others are doubtful, too", name, why);
+	else if (kept && (doubt == SEPARATE_FOREIGN || doubt == SEPARATE_NOISE ||
+				 doubt == SEPARATE_REVERSED || doubt == SEPARATE_CROWD))
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
 	else
-		warn("%s: %s (misfit): the others are doubtful, too", name, why);
+		warn("%s: %s", name, why);
 	found_doubt(out, why);
 	free(why);
 	return 1;

@@ -379,6 +379,12 @@ static const double COVERED = 0.02;
  * sums by Campbell's theorem are not believed. */
 static const double UNLIKE = 0.2;
 
+/* Standard deviation of the widths of pulses from those of their velocities, logarithm,
+ * from which on they are not believed to be of particles: that of the square of the field
+ * of a loop, at half its height, over a bore of half its radius.  Of .4 it is .05, of .6
+ * .12. */
+static const double WIDTHS = 0.08;
+
 enum separate_doubt separate_doubtful(const struct separate *s)
 {
 	const struct separate_counters *c = &s->counters;
@@ -397,6 +403,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_CHANGED;
 	if (s->cal.lines_in_noise)
 		return SEPARATE_LINES;
+	if (s->scene.scatter[JOINT_WIDTH] > WIDTHS)
+		return SEPARATE_WIDTHS;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;
 	if (c->countless > COVERED * c->samples)

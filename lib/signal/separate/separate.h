@@ -175,6 +175,7 @@ enum separate_doubt {
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
 	SEPARATE_LINES,      /* what lines leave was taken for noise */
+	SEPARATE_WIDTHS,     /* widths differ more than those of particles */
 	SEPARATE_COUNTLESS,  /* what is unresolved may be any number of particles */
 	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
