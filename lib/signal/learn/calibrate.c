@@ -2,6 +2,7 @@
 #include "signal/learn/calibrate.h"
 #include "num/dot.h"
 #include "signal/learn/find_lines.h"
+#include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include "signal/learn/velocities.h"
@@ -29,7 +30,7 @@ static struct look look_with(const struct look *look, const struct calibrate_par
 /* Keeps other in place of c if its pulses describe the record, and better. */
 static int keep_better(struct calibration *c, struct calibration *other)
 {
-	int better = other->penalised < c->penalised && learn_describes(other) &&
+	int better = other->penalised < c->penalised && calibration_describes(other) &&
 		     !other->dense;
 
 	calibration_clear(better ? c : other);
@@ -130,7 +131,7 @@ static enum separate_status look_again(struct look *look, struct calibration *c)
  * is white above their band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
-	return learn_describes(c) ||
+	return calibration_describes(c) ||
 	       (c->chi2 < CALIBRATE_TOLERABLE && measure_white_above(look, c->duration));
 }
 
@@ -227,9 +228,9 @@ static enum separate_status attempt_white(struct look *look, struct calibration 
 		return status;
 	/* No filter makes noise that drifts. */
 	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
-		learn_describes(c))
+		calibration_describes(c))
 		return status;
-	if (status == SEPARATE_OK && c->measured && !c->dense && learn_stands(c)) {
+	if (status == SEPARATE_OK && c->measured && !c->dense && calibration_stands(c)) {
 		int lacks = 0;
 
 		status = lacks_low(look, c, &lacks);
@@ -308,12 +309,12 @@ static enum separate_status try_velocities(
 	limited.lag = v->ratio * 0.5 * (lo + hi);
 	limited.spread = fmin((hi - lo) / (hi + lo), WIDEST);
 	limited.most *= HALF;
-	if (learn_duration(PULSE_SINE, 1, &low) != NUM_OK)
+	if (known_shape_duration(PULSE_SINE, 1, &low) != NUM_OK)
 		return SEPARATE_MEMORY;
 	wide.seen = 1;
 	wide.lowest = 0.5 * (lo + hi) / low;
 	status = find(&wide, c);
-	if (status == SEPARATE_OK && (!learn_describes(c) || c->dense)) {
+	if (status == SEPARATE_OK && (!calibration_describes(c) || c->dense)) {
 		calibration_clear(c);
 		status = SEPARATE_HARD;
 	}
@@ -455,7 +456,7 @@ static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 	status = calibrate_as(par, x1, y2, n, c);
 	free(y2);
 	c->gain = -c->gain;
-	if (status == SEPARATE_OK && !learn_describes(c)) {
+	if (status == SEPARATE_OK && !calibration_describes(c)) {
 		calibration_clear(c);
 		status = SEPARATE_NO_LAG;
 	}
@@ -488,14 +489,14 @@ static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 	status = calibrate_as(&known, x2, x1, n, &exchanged);
 	if (status == SEPARATE_MEMORY)
 		return status;
-	describes = status == SEPARATE_OK && learn_describes(&exchanged);
+	describes = status == SEPARATE_OK && calibration_describes(&exchanged);
 	known = *par;
 	known.in_order = 1;
 	known.most -= exchanged.work;
 	status = calibrate(&known, x1, x2, n, c);
 	c->work += exchanged.work;
 	if (describes && status != SEPARATE_MEMORY &&
-		!(status == SEPARATE_OK && learn_describes(c) &&
+		!(status == SEPARATE_OK && calibration_describes(c) &&
 			delays_of(c) < delays_of(&exchanged))) {
 		if (status == SEPARATE_OK)
 			calibration_clear(c);

@@ -91,3 +91,13 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		if (c->omega[k] * c->duration < 8 * M_PI || isinf(c->tone_variance))
 			scene->omega[scene->tones++] = c->omega[k];
 }
+
+int calibration_describes(const struct calibration *c)
+{
+	return c->chi2 < CALIBRATE_DESCRIBES;
+}
+
+int calibration_stands(const struct calibration *c)
+{
+	return calibration_describes(c) && (!c->corrected || c->isolated > 0);
+}

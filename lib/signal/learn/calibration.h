@@ -132,6 +132,12 @@ enum separate_status {
 
 void calibration_clear(struct calibration *c);
 
+/* 1 if the pulse describes its record, by CALIBRATE_DESCRIBES. */
+int calibration_describes(const struct calibration *c);
+/* 1 if it does, and does not replace several: a shape corrected until no example is one
+ * pulse may be another one's half, or a group of them. */
+int calibration_stands(const struct calibration *c);
+
 /* Removes what the channels have of each other: x1 = y1 + k1 y2, x2 = y2 + k2 y1. */
 void calibration_unmix(const double crosstalk[2], double *x1, double *x2, size_t n);
 

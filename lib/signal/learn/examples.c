@@ -161,6 +161,12 @@ double examples_chi2(struct examples *ex)
 	return sum;
 }
 
+void examples_set_scene(struct examples *ex, const struct calibration *c)
+{
+	calibration_scene(c, &ex->scene);
+	ex->scene.max_pulses = EXAMPLE_PULSES;
+}
+
 void examples_keep(struct examples *ex)
 {
 	for (int i = 0; i < ex->count; i++)

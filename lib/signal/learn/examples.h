@@ -1,5 +1,5 @@
-/* examples.h - clear short sections of a record to which its pulse is fitted; for learn.c
- * and correct.c only
+/* examples.h - clear short sections of a record to which its pulse is fitted; for lib/signal/learn
+ * only
  *
  * All is in units of the noise.
  */
@@ -66,6 +66,9 @@ struct examples {
 /* Selects the clearest short sections of the record, at most most of them; if few are
  * short, also pieces of longer ones. */
 void examples_pick(struct examples *ex, int most, const struct calibration *c);
+
+/* Takes the parameters of the instrument from c. */
+void examples_set_scene(struct examples *ex, const struct calibration *c);
 
 /* Finds the pulses of all examples again; one that overlaps others must reduce chi-square
  * by this share of their energy.  Returns the median of their chi-square per degree of

@@ -13,19 +13,6 @@
 #include "signal/learn/template.h"
 #include <stddef.h>
 
-/* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
- * none up to max_lag. */
-double learn_lowest_lag(const double *r, size_t max_lag);
-/* *duration: of a pulse whose autocorrelation is lowest at this lag, samples. */
-enum num_status learn_duration(int pulse, double low, double *duration);
-/* Sets the shape of c to this pulse, as filtered by the whitening, at the present
- * duration. */
-enum num_status learn_set_shape(struct calibration *c, int pulse);
-/* 1 if the pulse describes its record, by CALIBRATE_DESCRIBES. */
-int learn_describes(const struct calibration *c);
-/* 1 if it does, and does not replace several: a shape corrected until no example is one
- * pulse may be another one's half, or a group of them. */
-int learn_stands(const struct calibration *c);
 /* Flags of the samples, aligned, that are not known; NULL if the record was whitened,
  * which spreads them. */
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,

@@ -3,6 +3,7 @@
 #include "num/dot.h"
 #include "signal/detect/align.h"
 #include "signal/learn/find_lines.h"
+#include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/matched.h"
 #include "signal/noise/robust.h"
@@ -172,7 +173,7 @@ static enum separate_status find_low(
 {
 	if (align_autocorrelation(y1, y2, rec->n, rec->n / 4, rec->work) != NUM_OK)
 		return SEPARATE_MEMORY;
-	*low = learn_lowest_lag(rec->work, rec->n / 4);
+	*low = lowest_lag(rec->work, rec->n / 4);
 	return SEPARATE_OK;
 }
 
@@ -372,8 +373,7 @@ static enum separate_status find_duration(
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
 		NUM_OK)
 		return SEPARATE_MEMORY;
-	rec->low =
-		look->lowest > 0 ? look->lowest : learn_lowest_lag(rec->work, rec->n / 4);
+	rec->low = look->lowest > 0 ? look->lowest : lowest_lag(rec->work, rec->n / 4);
 	if (find_width(rec, c) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!c->whitening.tap)
@@ -383,8 +383,8 @@ static enum separate_status find_duration(
 	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
 	c->duration = par->duration;
 	if ((isnan(c->duration) &&
-		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
-		learn_set_shape(c, c->pulse) != NUM_OK)
+		    known_shape_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
+		known_shape_set(c, c->pulse) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!(c->duration >= SHAPE_SHORTEST))
 		return SEPARATE_FAST;

@@ -1,7 +1,7 @@
 /* averaging.c - means of samples, from which pulses of many samples are separated */
 #include "num/dot.h"
 #include "signal/detect/align.h"
-#include "signal/learn/learn.h"
+#include "signal/learn/known_shape.h"
 #include "signal/separate/separate_state.h"
 #include <stdint.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ static enum num_status find_lowest_lag(struct buffer mean[2], size_t n, double *
 	subtract_mean(mean[1].x, n);
 	if (r)
 		status = align_autocorrelation(mean[0].x, mean[1].x, n, n / 4, r);
-	*lag = status == NUM_OK ? learn_lowest_lag(r, n / 4) : 0;
+	*lag = status == NUM_OK ? lowest_lag(r, n / 4) : 0;
 	free(r);
 	return status;
 }

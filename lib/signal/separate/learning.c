@@ -2,7 +2,6 @@
 #include "num/dot.h"
 #include "signal/detect/bursts.h"
 #include "signal/detect/spikes.h"
-#include "signal/learn/learn.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdint.h>
@@ -238,7 +237,7 @@ static enum separate_status learn_limited(struct separate *s, size_t n, double m
 			for (size_t i = 0; i < n; i++)
 				hidden[c][i] = known[c][i] || separate_saturates(s, c, i);
 		status = learn_without(s, n, HALF * most, hidden, &below);
-		describes = status == SEPARATE_OK && learn_describes(&below);
+		describes = status == SEPARATE_OK && calibration_describes(&below);
 		most = describes ? TWICE * below.work : most - below.work;
 	}
 	free(work);
@@ -408,7 +407,7 @@ enum { ISOLATED = 6 };
  * there are too few samples to test its spectrum. */
 static int is_clear(const struct calibration *c)
 {
-	return learn_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
+	return calibration_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
 	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
 	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) && !c->dense &&
 	       !c->presumed_white && !c->measured && !c->corrected && !c->whitening.tap &&
