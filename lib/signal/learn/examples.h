@@ -1,5 +1,5 @@
-/* examples.h - clear short sections of a record to which its pulse is fitted; for lib/signal/learn
- * only
+/* examples.h - clear short sections of a record to which its pulse is fitted; for
+ * lib/signal/learn only
  *
  * All is in units of the noise.
  */
