@@ -4,17 +4,17 @@
 #include "common/covariates.h"
 #include "common/quantile_columns.h"
 #include "common/time_unit.h"
+#include "event_list.h"
 #include "filter_options.h"
+#include "fleet_table.h"
 #include "io/quantities.h"
 #include "io/reasons.h"
 #include "io/series.h"
 #include "life/grey/grey.h"
-#include "life/prior/fleet.h"
 #include "life/score/metrics.h"
 #include "life/trend/passage.h"
 #include "life/trend/plateau.h"
 #include "life/trend/rescaled.h"
-#include "num/checksum.h"
 #include "num/select.h"
 #include <float.h>
 #include <math.h>
@@ -111,19 +111,7 @@ static const struct {
 
 enum { WEIGHED = sizeof weighed / sizeof *weighed };
 
-static struct fleet *fleet; /* NULL without --fleet */
-static char **fleet_unit;   /* names */
-static int n_fleet_units;
 static struct bank_chances *chances;
-
-static struct event {
-	double t;
-	enum bank_event what;
-	char *unit; /* NULL: all */
-	long line;
-	int known, reached, effective; /* for any unit */
-} * events;
-static int n_events;
 
 struct outlook {
 	const char *unit; /* its name */
@@ -184,14 +172,6 @@ void outlook_check(int bare)
 /* Of the tables of the fleet and of events, by their own account, and of covariates. */
 static struct reasons doubts;
 
-static void doubt_of(struct table_in *t)
-{
-	const char *why = table_doubted(t);
-
-	if (why)
-		reasons_add(&doubts, why);
-}
-
 const char *outlook_doubt(void)
 {
 	const char *far = isnan(outlook_threshold) ? NULL : covariates_doubt();
@@ -199,101 +179,6 @@ const char *outlook_doubt(void)
 	if (far)
 		reasons_add(&doubts, far);
 	return reasons_text(&doubts);
-}
-
-/* Ages are operating times if the table of the fleet has the column of the clock. */
-static void read_fleet(
-	const struct series *like, const char *unit_column, const char *clock_column)
-{
-	struct series *in = series_open(fleet_file, unit_column);
-	struct table_in *table = series_table(in);
-	int clock = clock_column ? table_find(table, clock_column) : -1;
-	enum num_status status;
-	int failed, carried_on, n;
-	char y[UNIT_WORD];
-
-	table_unit_word(series_table(like), series_value_column(like), y);
-	series_scale(in, timeunit_ratio(table, series_time_column(in)),
-		table_ratio(table, series_value_column(in), y));
-	if (clock >= 0)
-		table_set_scale(table, clock, timeunit_ratio(table, clock));
-	fleet = fleet_new(outlook_threshold, direction == UP ? 1 : -1);
-	status = fleet ? NUM_OK : NUM_MEMORY;
-	while (status == NUM_OK && series_next(in)) {
-		if (series_units(in) > n_fleet_units) {
-			fleet_unit = xrealloc(fleet_unit, (size_t)n_fleet_units + 1,
-				sizeof *fleet_unit);
-			fleet_unit[n_fleet_units++] = xstrdup(series_unit_name(in));
-		}
-		if (!isnan(series_value(in)))
-			status = fleet_add(fleet, series_unit(in),
-				clock < 0 ? series_time(in) : table_number(table, clock),
-				series_value(in));
-	}
-	if (status == NUM_DOMAIN)
-		die(EXIT_RUN, "%s: line %ld: operating time decreases", fleet_file,
-			table_line(table));
-	if (status == NUM_OK)
-		status = fleet_build(fleet, &failed, &carried_on);
-	if (status != NUM_OK)
-		die(EXIT_RUN, "no memory for the fleet");
-	fleet_shapes(fleet, &n);
-	if (n == 0)
-		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
-			fleet_file, series_units(in));
-	if (n > BANK_PATHS_MAX)
-		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d",
-			fleet_file, BANK_PATHS_MAX, n);
-	doubt_of(table);
-	stats_set("fleet_units", failed);
-	stats_set("fleet_units_carried_on", carried_on);
-	stats_set("fleet_units_left_out", series_units(in) - n);
-	series_close(in);
-}
-
-uint64_t outlook_fleet(void)
-{
-	const struct bank_shape *path;
-	uint64_t sum = CHECKSUM_START;
-	int n = 0;
-
-	path = fleet ? fleet_shapes(fleet, &n) : NULL;
-	for (int i = 0; i < n; i++)
-		sum = checksum(
-			path[i].path, (size_t)path[i].n * sizeof *path[i].path, sum);
-	return sum;
-}
-
-static void read_events(const char *unit_column)
-{
-	struct table_in *in = table_open(events_file);
-	int t = table_need(in, "t"), what = table_need(in, "event"),
-	    unit = table_find(in, unit_column);
-
-	/* Events of one unit must not count for all. */
-	if (unit < 0 && table_find(in, "unit") >= 0)
-		table_need(in, unit_column);
-	table_set_scale(in, t, timeunit_ratio(in, t));
-	while (table_next(in)) {
-		struct event *e;
-		const char *word = table_text(in, what);
-		int repair = strcmp(word, "repair") == 0;
-
-		if (!repair && strcmp(word, "load") != 0)
-			die(EXIT_RUN, "%s: line %ld: event '%s', want repair or load",
-				table_name(in), table_line(in), word);
-		events = xrealloc(events, (size_t)n_events + 1, sizeof *events);
-		e = &events[n_events++];
-		*e = (struct event){ table_number(in, t),
-			repair ? BANK_REPAIR : BANK_LOAD,
-			unit < 0 ? NULL : xstrdup(table_text(in, unit)), table_line(in),
-			0, 0, 0 };
-		if (!isfinite(e->t))
-			die(EXIT_RUN, "%s: line %ld: time is missing or not finite",
-				table_name(in), table_line(in));
-	}
-	doubt_of(in);
-	table_close(in);
 }
 
 void outlook_open(struct series *in, const char *unit_column, const char *clock_column)
@@ -321,23 +206,21 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 	if (!chances)
 		die(EXIT_RUN, "no memory");
 	if (fleet_file)
-		read_fleet(in, unit, clock_column);
+		fleet_table_read(
+			&(struct fleet_table_par){ fleet_file, unit, clock_column,
+				outlook_threshold, direction == UP ? 1 : -1 },
+			in, &doubts);
 	if (events_file)
-		read_events(unit);
+		event_list_read(events_file, unit, &doubts);
 }
 
 void outlook_close(void)
 {
 	covariates_close();
-	fleet_free(fleet);
+	fleet_table_free();
+	event_list_free();
 	bank_chances_free(chances);
-	for (int i = 0; i < n_events; i++)
-		free(events[i].unit);
-	free(events);
 	reasons_free(&doubts);
-	for (int i = 0; i < n_fleet_units; i++)
-		free(fleet_unit[i]);
-	free(fleet_unit);
 }
 
 void outlook_read(const struct series *in, struct outlook_row *row)
@@ -378,12 +261,9 @@ static void start(struct outlook *o)
 
 	if (model >= GREY)
 		return;
-	if (fleet)
-		par.more = fleet_shapes(fleet, &par.n_more);
-	par.families = families[model] | (fleet ? BANK_OTHER : 0);
-	for (int i = 0; i < n_fleet_units; i++)
-		if (strcmp(fleet_unit[i], o->unit) == 0)
-			par.own = fleet_shape_of(fleet, i);
+	par.more = fleet_table_shapes(&par.n_more);
+	par.families = families[model] | (par.more ? BANK_OTHER : 0);
+	par.own = fleet_table_shape_of(o->unit);
 	o->bank = bank_new(&par);
 	if (!o->bank)
 		die(EXIT_RUN, "no memory for the prediction");
@@ -403,26 +283,17 @@ void outlook_pass(struct outlook *o, struct state *s)
 	o->bank = NULL;
 }
 
-static int concerns(const struct event *e, const char *unit)
-{
-	return !e->unit || strcmp(e->unit, unit) == 0;
-}
-
 /* Events since the last row in which the clock advanced.  Those of a kind are one, as the
  * rows know nothing of what was between them. */
 static void heed_events(struct outlook *o, const struct outlook_row *in)
 {
-	double last[] = { [BANK_REPAIR] = -INFINITY, [BANK_LOAD] = -INFINITY };
+	double last[BANK_LOAD + 1];
+	unsigned long n = event_list_between(o->unit, o->now.heeded, in->t, last);
 
-	for (int i = 0; i < n_events; i++) {
-		const struct event *e = &events[i];
-
-		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, o->unit))
-			continue;
-		last[e->what] = fmax(last[e->what], e->t);
-		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
+	if (n > 0) { /* they explain it */
+		o->now.scale = (struct rescaled){ 0 };
 		o->now.course = (struct plateau){ 0 };
-		o->now.events++;
+		o->now.events += n;
 	}
 	for (enum bank_event e = BANK_REPAIR; e <= BANK_LOAD; e++)
 		if (last[e] > -INFINITY && !bank_event(o->bank, e))
@@ -554,7 +425,7 @@ static void foresee(struct outlook *o, double *cell)
 	if (status == NUM_MEMORY)
 		die(EXIT_RUN, "no memory for %d paths", n);
 	if (!(longest > 0))
-		longest = fleet ? INFINITY : 10 * (o->now.clock - o->now.from);
+		longest = fleet_file ? INFINITY : 10 * (o->now.clock - o->now.from);
 	if (status == NUM_OK) {
 		metric_cut(life, (size_t)n, INFINITY);
 		put_draws(o, life, n, longest, cell);
@@ -657,7 +528,7 @@ static int check_direction(const struct outlook *o)
 int outlook_settle(const struct outlook *o)
 {
 	const char *unit = o->unit;
-	unsigned long due = 0;
+	unsigned long due;
 	int doubtful = !is_rescaled(o) &&
 		       rescaled_doubtful(&o->now.scale, outlook_threshold),
 	    stuck = o->bank && bank_stuck(o->bank),
@@ -693,48 +564,12 @@ int outlook_settle(const struct outlook *o)
 		     "gain seems to have changed",
 			o->prefix, RESCALED_HALF, o->now.rescaled, o->now.factor);
 
-	for (int i = 0; i < n_events; i++) {
-		struct event *e = &events[i];
-
-		if (!concerns(e, unit))
-			continue;
-		e->known = 1;
-		e->reached |= e->t <= o->now.heeded;
-		e->effective |= e->t <= o->now.heeded && e->t > o->now.early;
-		due += e->t <= o->now.heeded;
-	}
+	due = event_list_settle(unit, o->now.heeded, o->now.early);
 	if (due <= o->now.events)
 		return doubt;
 	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
 	     "no effect",
 		events_file, due - o->now.events, *unit ? " of unit " : "", unit);
-	return 1;
-}
-
-int outlook_report_events(void)
-{
-	const struct event *first = NULL;
-	int n = 0;
-	char *why, *more;
-
-	for (int i = n_events - 1; i >= 0; i--)
-		if (!events[i].effective) {
-			first = &events[i];
-			n++;
-		}
-	if (n == 0)
-		return 0;
-	if (!first->known)
-		why = xprintf("the series has no unit '%s'", first->unit);
-	else
-		why = xprintf("time %g is %s", first->t,
-			first->reached ? "not after the third value in use"
-				       : "after the last row of the series");
-	more = n > 1 ? xprintf("; nor have %d others", n - 1) : xstrdup("");
-	warn("%s: line %ld: the event has no effect: %s%s", events_file, first->line, why,
-		more);
-	free(why);
-	free(more);
 	return 1;
 }
 

@@ -37,7 +37,6 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
  * NULL: they do not. */
 const char *outlook_doubt(void);
 void outlook_close(void);
-uint64_t outlook_fleet(void); /* checksum of the paths of the fleet */
 
 /* A row of the input. */
 struct outlook_row {
@@ -64,8 +63,6 @@ int outlook_cells(void);
  * returns 1 if there are events before the saved state that it did not know, or if its
  * values have changed their scale. */
 int outlook_settle(const struct outlook *o);
-/* After all units: warns and returns 1 if an event had no effect on any of them. */
-int outlook_report_events(void);
 int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none */
 /* Counts the work it did. */
 void outlook_count(struct outlook *o);

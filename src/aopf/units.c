@@ -2,7 +2,9 @@
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "event_list.h"
 #include "filter_options.h"
+#include "fleet_table.h"
 #include "num/checksum.h"
 #include <errno.h>
 #include <math.h>
@@ -137,7 +139,7 @@ int units_report(const struct units *units)
 			units->unit[0]->name);
 		doubtful = 1;
 	}
-	return outlook_report_events() | doubtful;
+	return event_list_report() | doubtful;
 }
 
 struct machine *units_find(struct units *units, int number, const char *name)
@@ -237,7 +239,7 @@ static struct head head_of(struct units *units, const char *options)
 {
 	struct head h = { .size = state_size(units),
 		.options = checksum(options, strlen(options), CHECKSUM_START),
-		.fleet = outlook_fleet() };
+		.fleet = fleet_table_checksum() };
 
 	memcpy(h.magic, magic, sizeof magic);
 	return h;
