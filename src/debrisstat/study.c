@@ -128,6 +128,7 @@ struct study study_read(
 	struct study study = study_of(t);
 	long last = 0, part = table_part(t);
 	struct summary summary;
+	const char *why;
 
 	if (!e)
 		check(e, ENSEMBLE_MEMORY);
@@ -160,8 +161,9 @@ struct study study_read(
 				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
-	if (table_doubted(t))
-		reasons_add(doubts, table_doubted(t));
+	why = table_doubted(t);
+	if (why)
+		reasons_add(doubts, why);
 	study.cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 	check(e, ensemble_close(e));
