@@ -1,4 +1,3 @@
-/* event_list.c - see event_list.h */
 #include "event_list.h"
 #include "cli/msg.h"
 #include "common/time_unit.h"

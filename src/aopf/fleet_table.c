@@ -1,4 +1,3 @@
-/* fleet_table.c - see fleet_table.h */
 #include "fleet_table.h"
 #include "cli/msg.h"
 #include "cli/stats.h"

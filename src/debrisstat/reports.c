@@ -1,4 +1,3 @@
-/* reports.c - see reports.h */
 #include "reports.h"
 #include "cli/msg.h"
 #include "cli/stats.h"

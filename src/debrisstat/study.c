@@ -1,4 +1,3 @@
-/* study.c - see study.h */
 #include "study.h"
 #include "cli/msg.h"
 #include "cli/opt.h"

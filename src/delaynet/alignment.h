@@ -1,9 +1,9 @@
 /* alignment.h - the delay between the channels of a record that its sections show
  *
  * Pulses pass sensor 2 after sensor 1 by the delay at which the product of both channels,
- * summed over the sections of sensor 1, is largest.  Products are of sums over STEPS
- *parts of a duration, the coarsest sampling that the network takes, and a parabola
- *through the three largest finds the delay between two of them.
+ * summed over the sections of sensor 1, is largest.  Products are of sums over as many
+ * samples as the coarsest sampling that the network takes has between two, and a parabola
+ * through the three largest finds the delay between two of them.
  *
  *	struct alignment *a = alignment_new(duration, 2 * align);
  *	alignment_add(a, y1, n, y2, available);
