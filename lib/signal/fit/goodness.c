@@ -86,15 +86,6 @@ static int mark_comb(
 	return 1;
 }
 
-/* 1 if the fit holds the delay at its limit: there chi-square is not least, and the
- * errors mean nothing. */
-static int is_held(const struct joint_scene *s, const struct joint_pulse *p)
-{
-	double beyond = JOINT_BEYOND * (s->delta_max - s->delta_min);
-
-	return p->delta <= s->delta_min - beyond || p->delta >= s->delta_max + beyond;
-}
-
 void goodness_of_fit(const struct joint *j, int done, double boundary, int model_holds,
 	struct goodness *out)
 {
@@ -113,9 +104,7 @@ void goodness_of_fit(const struct joint *j, int done, double boundary, int model
 	for (int i = 0; i < done; i++) {
 		double energy = j->pulse[i].a * j->pulse[i].a * joint_energy(s);
 
-		out->pulse[i] = energy < s->threshold || is_held(s, &j->pulse[i])
-					? SEPARATE_MISFIT
-					: out->stretch;
+		out->pulse[i] = energy < s->threshold ? SEPARATE_MISFIT : out->stretch;
 	}
 	if (too_much(chi2, dof, SIGMAS_NEVER)) {
 		for (int i = 0; i < done; i++)
