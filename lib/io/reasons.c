@@ -14,7 +14,7 @@ static int most(void)
 
 void reasons_add(struct reasons *r, const char *why)
 {
-	if (r->all.n < most())
+	if (why && r->all.n < most())
 		keys_set(&r->all, why, "");
 }
 

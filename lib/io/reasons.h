@@ -10,7 +10,7 @@ struct reasons {
 	char *text;
 };
 
-/* Copies it. */
+/* Copies it; NULL: there is none. */
 void reasons_add(struct reasons *r, const char *why);
 /* The first eight, and the number of the others; NULL if there is none.  Valid until the
  * next call and reasons_free(). */

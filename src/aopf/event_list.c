@@ -21,7 +21,6 @@ void event_list_read(const char *file, const char *unit_column, struct reasons *
 	struct table_in *in = table_open(file);
 	int t = table_need(in, "t"), what = table_need(in, "event"),
 	    unit = table_find(in, unit_column);
-	const char *why;
 
 	events_name = file;
 	/* Events of one unit must not count for all. */
@@ -46,9 +45,7 @@ void event_list_read(const char *file, const char *unit_column, struct reasons *
 			die(EXIT_RUN, "%s: line %ld: time is missing or not finite",
 				table_name(in), table_line(in));
 	}
-	why = table_doubted(in);
-	if (why)
-		reasons_add(doubts, why);
+	reasons_add(doubts, table_doubted(in));
 	table_close(in);
 }
 

@@ -22,7 +22,6 @@ void fleet_table_read(const struct fleet_table_par *par, const struct series *li
 	enum num_status status;
 	int failed, carried_on, n;
 	char y[UNIT_WORD];
-	const char *why;
 
 	table_unit_word(series_table(like), series_value_column(like), y);
 	series_scale(in, timeunit_ratio(table, series_time_column(in)),
@@ -55,9 +54,7 @@ void fleet_table_read(const struct fleet_table_par *par, const struct series *li
 	if (n > BANK_PATHS_MAX)
 		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d",
 			par->file, BANK_PATHS_MAX, n);
-	why = table_doubted(table);
-	if (why)
-		reasons_add(doubts, why);
+	reasons_add(doubts, table_doubted(table));
 	stats_set("fleet_units", failed);
 	stats_set("fleet_units_carried_on", carried_on);
 	stats_set("fleet_units_left_out", series_units(in) - n);

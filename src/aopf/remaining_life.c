@@ -174,10 +174,8 @@ static struct reasons doubts;
 
 const char *outlook_doubt(void)
 {
-	const char *far = isnan(outlook_threshold) ? NULL : covariates_doubt();
-
-	if (far)
-		reasons_add(&doubts, far);
+	if (!isnan(outlook_threshold))
+		reasons_add(&doubts, covariates_doubt());
 	return reasons_text(&doubts);
 }
 

@@ -154,7 +154,6 @@ static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
 	char *path = split(text, &diameter);
-	const char *why;
 	struct table_in *t;
 	int more, ca, cv, cw, ce = -1;
 	size_t before = p->n;
@@ -192,9 +191,7 @@ static void read_balls(struct pulses *p, const char *text, int table)
 		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	p->signs[sign < 0]++;
 	compare(p, before, table_name(t));
-	why = table_doubted(t);
-	if (why)
-		reasons_add(&p->doubts, why);
+	reasons_add(&p->doubts, table_doubted(t));
 	table_close(t);
 	free(path);
 }
