@@ -24,6 +24,11 @@ double table_quantity(const struct table_in *t, const char *key, enum unit unit)
 	return value;
 }
 
+int quantity_differs(double a, double b)
+{
+	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
+}
+
 /* The word after that at text. */
 static const char *next_word(const char *text)
 {

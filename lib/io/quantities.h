@@ -9,6 +9,10 @@
  * it is something else than a number of this unit. */
 double table_quantity(const struct table_in *t, const char *key, enum unit unit);
 
+/* 1 if two quantities differ by more than the digits that were lost where one of them was
+ * rounded; 0 if one is nan. */
+int quantity_differs(double a, double b);
+
 /* The unit of a column as the "# units:" line writes it, at most 31 bytes; "1" where it
  * names none. */
 enum { UNIT_WORD = 32 };

@@ -75,21 +75,15 @@ static struct study study_of(const struct table_in *t)
 		.distance = table_quantity(t, "step_distance", UNIT_LENGTH) };
 }
 
-/* The values may have been rounded in between. */
-static int differ(double a, double b)
-{
-	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
-}
-
 /* Ends the program where this part of the table is of another area or step. */
 static void check_part(const struct table_in *t, const struct study *study)
 {
 	struct study now = study_of(t);
 
-	if (differ(now.area, study->area))
+	if (quantity_differs(now.area, study->area))
 		die(EXIT_RUN, "%s: line %ld: surfaces of %g and of %g m2 in one study",
 			table_name(t), table_line(t), study->area, now.area);
-	if (differ(now.distance, study->distance))
+	if (quantity_differs(now.distance, study->distance))
 		die(EXIT_RUN, "%s: line %ld: steps of %g and of %g m in one study",
 			table_name(t), table_line(t), study->distance, now.distance);
 }
@@ -127,7 +121,6 @@ struct study study_read(
 	struct study study = study_of(t);
 	long last = 0, part = table_part(t);
 	struct summary summary;
-	const char *why;
 
 	if (!e)
 		check(e, ENSEMBLE_MEMORY);
@@ -160,9 +153,7 @@ struct study study_read(
 				: ": if later ones wore nothing off, specify --summary");
 	if (summary.table)
 		table_close(summary.table);
-	why = table_doubted(t);
-	if (why)
-		reasons_add(doubts, why);
+	reasons_add(doubts, table_doubted(t));
 	study.cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 	check(e, ensemble_close(e));

@@ -78,26 +78,20 @@ static struct physics physics_of(const struct table_in *t)
 		table_quantity(t, "step_distance", UNIT_LENGTH) };
 }
 
-/* The values may have been rounded in between. */
-static int differ(double a, double b)
-{
-	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
-}
-
 /* All parts of a table must be of the same fragments. */
 static void check_part(const struct table_in *t, const struct physics *first)
 {
 	struct physics now = physics_of(t);
 
-	if (differ(now.area, first->area))
+	if (quantity_differs(now.area, first->area))
 		die(EXIT_RUN, "%s: line %ld: fragments of %g and of %g m2 in one table",
 			table_name(t), table_line(t), first->area, now.area);
-	if (differ(now.pressure, first->pressure))
+	if (quantity_differs(now.pressure, first->pressure))
 		die(EXIT_RUN,
 			"%s: line %ld: nominal pressures of %g and of %g Pa in one table: "
 			"give each its own --wear",
 			table_name(t), table_line(t), first->pressure, now.pressure);
-	if (differ(now.distance, first->distance))
+	if (quantity_differs(now.distance, first->distance))
 		die(EXIT_RUN, "%s: line %ld: steps of %g and of %g m in one table",
 			table_name(t), table_line(t), first->distance, now.distance);
 }
@@ -106,18 +100,18 @@ static void check_part(const struct table_in *t, const struct physics *first)
 static void check_options(
 	const char *option, const struct physics *told, double pressure, double *distance)
 {
-	if (differ(pressure, told->pressure))
+	if (quantity_differs(pressure, told->pressure))
 		die(EXIT_USAGE,
 			"--wear %s: the nominal pressure of the fragments is %g Pa",
 			option, told->pressure);
 	if (isnan(pump.fragment_area))
 		pump.fragment_area = told->area;
-	if (differ(pump.fragment_area, told->area))
+	if (quantity_differs(pump.fragment_area, told->area))
 		die(EXIT_USAGE, "--wear %s: fragments of %g m2, not of %g m2", option,
 			told->area, pump.fragment_area);
 	if (isnan(*distance))
 		*distance = told->distance;
-	if (differ(*distance, told->distance))
+	if (quantity_differs(*distance, told->distance))
 		die(EXIT_USAGE, "--wear %s: steps of %g m, not of %g m", option,
 			told->distance, *distance);
 }
