@@ -80,7 +80,7 @@ enum num_status find_origin(struct examples *ex, struct calibration *c)
 		(int)((shape_reach(s->shape) * fmax(s->width, 1) + 0.75) * s->duration);
 	size_t points = fft_fast_size(2 * (size_t)half + 1);
 	size_t stride = (points + 7) / 8 * 8; /* see FFT_ALIGNMENT */
-	struct fft *fft = fft_new(points, 1);
+	struct fft *fft = fft_new_forward(points);
 	double *x = fft_alloc(3 * stride);
 	double complex *spectrum = fft_alloc_complex(4 * stride);
 	struct mean_pulse mean[2];
