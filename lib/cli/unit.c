@@ -1,5 +1,6 @@
 #include "cli/unit.h"
 #include "cli/msg.h"
+#include "num/bytes.h"
 #include <ctype.h>
 #include <math.h>
 #include <stddef.h>
@@ -367,22 +368,33 @@ static char *write_exponent(int exponent, char *to)
 	return to;
 }
 
-static void write_digits(uint64_t value, int count, char *to)
+/* Eight digits: halves of four, pairs, and digits are split side by side, each quotient
+ * by a product that is exact for numbers of so many digits. */
+static void write_eight(uint64_t value, char *to)
 {
-	for (; count-- > 0; value /= 10)
-		to[count] = (char)('0' + value % 10);
+	uint64_t half = value / 10000 | value % 10000 << 32, pair, digit;
+
+	pair = half * 5243 >> 19 & 0x7f0000007f;
+	pair |= (half - 100 * pair) << 16;
+	digit = pair * 103 >> 10 & 0xf000f000f000f;
+	digit |= (pair - 10 * digit) << 8;
+	digit |= 0x3030303030303030; /* '0' */
+	bytes_put_u32_little((unsigned char *)to, (uint32_t)digit);
+	bytes_put_u32_little((unsigned char *)to + 4, (uint32_t)(digit >> 32));
 }
 
 /* As printf() does for %g with as many digits; returns the end. */
 static char *write_decimal(const struct decimal *d, int negative, char *to)
 {
-	enum { HALF = 8, HALF_UNIT = 100000000 }; /* two short chains of divisions */
-	char digit[LONGEST];
+	enum { HALF_UNIT = 100000000 };
+	char all[LONGEST], *digit = all + LONGEST - d->count;
 	int used = d->count, plain = d->exponent >= -4 && d->exponent < used;
 	int before = plain ? d->exponent + 1 : 1, whole; /* digits before the point */
+	uint64_t high = d->digits / HALF_UNIT;
 
-	write_digits(d->digits / HALF_UNIT, used - HALF, digit);
-	write_digits(d->digits % HALF_UNIT, HALF, digit + used - HALF);
+	all[0] = (char)('0' + high / HALF_UNIT);
+	write_eight(high % HALF_UNIT, all + 1);
+	write_eight(d->digits % HALF_UNIT, all + 9);
 	while (used > 1 && digit[used - 1] == '0')
 		used--;
 	if (negative)
@@ -437,15 +449,16 @@ static char *write_slowly(double value, char text[NUMBER_TEXT])
 size_t number_write(double value, char text[NUMBER_TEXT])
 {
 	double size = fabs(value);
+	int whole = size < 1e14 && value == floor(value);
 	struct decimal d = { .count = 0 };
 	char *end;
 
 	/* Powers of ten stay normal. */
-	if (size > 1e-280 && size < 1e280 && !(size < 1e14 && value == floor(value)))
+	if (size > 1e-280 && size < 1e280 && !whole)
 		d = shortest(size);
 	if (isnan(value))
 		end = strcpy(text, "nan") + 3;
-	else if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value)))
+	else if (whole && !(size == 0 && signbit(value)))
 		end = write_whole((long long)value, text);
 	else if (d.count > 0)
 		end = write_decimal(&d, value < 0, text);
