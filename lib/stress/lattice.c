@@ -133,25 +133,6 @@ void lattice_done(struct lattice *l)
 	free(l);
 }
 
-/* A row of cells onto a row of points; 0 if all are zero. */
-static int spread_row(const struct line *l, const double *cell, double scale, int element,
-	double *restrict row)
-{
-	size_t cells = (size_t)l->axis.cells, x = lanes_next(cell, 0, cells);
-
-	if (x == cells)
-		return 0;
-	memset(row, 0, (size_t)l->axis.points * sizeof *row);
-	for (; x < cells; x = lanes_next(cell, x + 1, cells)) {
-		const double *w = element ? l->spread[x] : l->gather[x];
-		double value = scale * cell[x], *to = row + l->start[x];
-
-		for (int i = 0; i < ORDER; i++)
-			to[i] += value * w[i];
-	}
-	return 1;
-}
-
 /* to += w from, for ORDER points */
 static ALWAYS_INLINE void add_points(double *to, double w, const double *from)
 {
@@ -163,6 +144,23 @@ static ALWAYS_INLINE void add_points(double *to, double w, const double *from)
 		sum = b + w * a;
 		memcpy(to + i, &sum, sizeof sum);
 	}
+}
+
+/* A row of cells onto a row of points; 0 if all are zero. */
+LANES_CLONES static int spread_row(const struct line *l, const double *cell, double scale,
+	int element, double *restrict row)
+{
+	size_t cells = (size_t)l->axis.cells, x = lanes_next(cell, 0, cells);
+
+	if (x == cells)
+		return 0;
+	memset(row, 0, (size_t)l->axis.points * sizeof *row);
+	for (; x < cells; x = lanes_next(cell, x + 1, cells)) {
+		const double *w = element ? l->spread[x] : l->gather[x];
+
+		add_points(row + l->start[x], scale * cell[x], w);
+	}
+	return 1;
 }
 
 /* A row of points onto ORDER rows, where it is not zero: most of it is, as few cells are
@@ -277,34 +275,44 @@ LANES_CLONES static void combine_rows(const struct lattice *l, const double *fie
 		lanes_store(row, sum_rows(f, w, from, 1), 1);
 }
 
-/* A cell, or that and the one a spacing on, from the points of its row. */
-static inline lanes sum_points(const double *p, const double *w, const int n)
+/* A cell from the points of its row. */
+static inline double sum_points(const double *p, const double *w)
 {
-	return w[0] * lanes_load(p, n) + w[1] * lanes_load(p + 1, n) +
-	       w[2] * lanes_load(p + 2, n) + w[3] * lanes_load(p + 3, n) +
-	       w[4] * lanes_load(p + 4, n) + w[5] * lanes_load(p + 5, n) +
-	       w[6] * lanes_load(p + 6, n) + w[7] * lanes_load(p + 7, n);
+	return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3] + w[4] * p[4] +
+	       w[5] * p[5] + w[6] * p[6] + w[7] * p[7];
 }
 
 /* Cells begin to end - 1 of a row, from its points after the first from.  Cells a whole
  * spacing apart have the same weights. */
-static void interpolate(
+LANES_CLONES static void interpolate(
 	const struct line *l, int begin, int end, const double *row, int from, double *to)
 {
 	int step = l->axis.wrap ? end - begin : (int)l->axis.spacing;
 
 	for (int first = begin; first < end && first < begin + step; first++) {
-		const double *w = l->gather[first];
-		int x = first;
+		const double *w = l->gather[first], *p = row + (l->start[first] - from);
+		double *at = to + (first - begin);
+		int count = (end - first + step - 1) / step;
 
-		for (; x + step < end; x += 2 * step) {
-			lanes sum = sum_points(row + (l->start[x] - from), w, 2);
+		for (; count >= 4; count -= 4, p += 4, at += 4 * step) {
+			lanes4 sum;
 
-			to[x - begin] = sum[0];
-			to[x + step - begin] = sum[1];
+			memcpy(&sum, p, sizeof sum);
+			sum *= w[0];
+			add_four(&sum, w[1], p + 1);
+			add_four(&sum, w[2], p + 2);
+			add_four(&sum, w[3], p + 3);
+			add_four(&sum, w[4], p + 4);
+			add_four(&sum, w[5], p + 5);
+			add_four(&sum, w[6], p + 6);
+			add_four(&sum, w[7], p + 7);
+			at[0] = sum[0];
+			at[step] = sum[1];
+			at[2 * step] = sum[2];
+			at[3 * step] = sum[3];
 		}
-		if (x < end)
-			to[x - begin] = sum_points(row + (l->start[x] - from), w, 1)[0];
+		for (; count > 0; count--, p++, at += step)
+			*at = sum_points(p, w);
 	}
 }
 
@@ -450,12 +458,9 @@ static void gather_run(const struct lattice_gather *g, const struct stress_span 
 		number[c] = at;
 		combine_rows(g->l, g->field[c], y, from, to, row);
 		interpolate(lx, begin, end, row, from, at);
-		if (part && part->number) {
-			const double *more = part_at(part, c, begin, y);
-
-			for (int x = 0; x < end - begin; x++)
-				at[x] += more[x];
-		}
+		if (part && part->number)
+			lanes_add_row(
+				at, part_at(part, c, begin, y), (size_t)(end - begin));
 	}
 	g->want->put(g->want->context, span, number);
 }

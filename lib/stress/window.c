@@ -201,9 +201,9 @@ LANES_CLONES static void multiply(const double complex *a, const double complex 
 
 		memcpy(&u, a + i, sizeof u);
 		memcpy(&v, b + i, sizeof v);
-		turned = (lanes4){ u[1], u[0], u[3], u[2] };
-		real = (lanes4){ v[0], v[0], v[2], v[2] };
-		imaginary = (lanes4){ v[1], v[1], v[3], v[3] };
+		turned = __builtin_shufflevector(u, u, 1, 0, 3, 2);
+		real = __builtin_shufflevector(v, v, 0, 0, 2, 2);
+		imaginary = __builtin_shufflevector(v, v, 1, 1, 3, 3);
 		u = u * real + turned * (imaginary * sign);
 		memcpy(to + i, &u, sizeof u);
 	}
