@@ -148,7 +148,8 @@ struct point_sum {
 	double cell;  /* the longer side, m, by which lengths are divided */
 	float dx, dy; /* sides of a cell over that */
 	double first; /* depth over that */
-	int shallow;  /* depths */
+	float flat;  /* 2 over the square of the distance at which loads are flat there */
+	int shallow; /* depths */
 	/* All pressures, and what turns a pressure into its load: in these, over 2 pi. */
 	double total, share;
 	const double *pressure;
@@ -268,6 +269,7 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 	s->dx = (float)(par->dx / s->cell);
 	s->dy = (float)(par->dy / s->cell);
 	s->first = SHALLOWEST * fmin(par->dx, par->dy) / s->cell;
+	s->flat = (float)(2 / ((FLAT * s->first) * (FLAT * s->first)));
 	s->shallow = lesser_int(
 		SHALLOW + (int)ceil(log2(SHALLOWEST / s->first)), MOST_SHALLOW);
 	s->nx = (par->nx + BLOCK - 1) / BLOCK;
@@ -375,14 +377,15 @@ static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n
 	for (int y = y0; y < y1; y++)
 		for (int x = x0; x < x1; x++) {
 			double p = pressure_at(s, x, y);
+			float u = centre(x, s->dx), v = centre(y, s->dy);
 
 			if (!(p > 0))
 				continue;
-			s->loaded[n++] = (struct cell){ (float)(s->share * p), (float)x,
-				(float)y, y * across + x };
+			s->loaded[n++] = (struct cell){ (float)(s->share * p), u, v,
+				y * across + x };
 			load += p;
-			sum_x += p * centre(x, s->dx);
-			sum_y += p * centre(y, s->dy);
+			sum_x += p * u;
+			sum_y += p * v;
 		}
 	if (load > 0)
 		put_square(s->size, block_x, block_y, (float)(load * s->share),
@@ -605,12 +608,11 @@ static ALWAYS_INLINE void list_each(
 	const struct point_sum *s, struct point *at, const struct block *b)
 {
 	const float near = at->deep ? 0 : (float)NEAR;
-	const float ix = (float)at->ix, iy = (float)at->iy;
 	const int own = offset(s, at->ix, at->iy);
 
 	for (size_t n = s->begin[b->at]; n < s->begin[b->at + 1]; n++) {
 		const struct cell *c = &s->loaded[n];
-		float x = (ix - c->x) * s->dx, y = (iy - c->y) * s->dy;
+		float x = at->x - c->x, y = at->y - c->y;
 
 		if (x * x + y * y < near * near)
 			at->element[at->elements++] =
@@ -658,12 +660,13 @@ static inline four beyond(four away, float half)
  * is taken to do so. */
 static inline four_bits flat_depths(const struct point_sum *s, four square)
 {
-	four_bits k = { 0 };
-	float z = (float)(FLAT * s->first);
+	const int most = s->careful ? 0 : s->shallow;
+	/* Each depth is twice the one before: half the exponent of the square of the
+	 * distance counts them. */
+	four_bits k = ((four_bits)(square * s->flat) >> 24) - 63;
 
-	for (int i = 0; i < s->shallow && !s->careful; i++, z *= 2)
-		k -= square >= z * z;
-	return k;
+	k &= k > 0;
+	return k - ((k - most) & (k > most));
 }
 
 /* Two by two squares of size l, or those that they consist of. */
