@@ -15,21 +15,32 @@ struct fft {
 	fftw_plan forward, inverse;
 };
 
-/* Zeros of calloc(), which large memory has without being touched: the threads that work
- * on it share the time that the system needs for its first use.  The address to free
- * stands before the aligned one. */
-double *fft_alloc(size_t count)
+/* The address to free stands before the aligned one. */
+static double *allocate(size_t count, int zeroed)
 {
+	size_t size = count * sizeof(double) + FFT_ALIGNMENT;
 	unsigned char *memory = NULL, *aligned;
 
 	if (count < (SIZE_MAX - FFT_ALIGNMENT) / sizeof(double))
-		memory = calloc(count * sizeof(double) + FFT_ALIGNMENT, 1);
+		memory = zeroed ? calloc(size, 1) : malloc(size);
 	if (!memory)
 		return NULL;
 	aligned = memory + FFT_ALIGNMENT - (uintptr_t)memory % FFT_ALIGNMENT;
 	pages_large(aligned, count * sizeof(double));
 	memcpy(aligned - sizeof memory, &memory, sizeof memory);
 	return (double *)(void *)aligned;
+}
+
+/* Zeros of calloc(), which large memory has without being touched: the threads that work
+ * on it share the time that the system needs for its first use. */
+double *fft_alloc(size_t count)
+{
+	return allocate(count, 1);
+}
+
+double *fft_alloc_unset(size_t count)
+{
+	return allocate(count, 0);
 }
 
 double complex *fft_alloc_complex(size_t count)

@@ -26,6 +26,7 @@ static inline double complex fft_complex(double re, double im)
  * address in it that FFT_ALIGNMENT divides. */
 enum { FFT_ALIGNMENT = 64 };
 double *fft_alloc(size_t count);
+double *fft_alloc_unset(size_t count); /* not zeroed */
 double complex *fft_alloc_complex(size_t count);
 void fft_free(void *p);
 

@@ -463,7 +463,7 @@ static enum num_status keep_memory(struct window_kept *kept, size_t size)
 	if (size <= kept->size)
 		return NUM_OK;
 	fft_free(kept->memory);
-	kept->memory = fft_alloc(size);
+	kept->memory = fft_alloc_unset(size);
 	kept->size = kept->memory ? size : 0;
 	return kept->memory ? NUM_OK : NUM_MEMORY;
 }
@@ -492,6 +492,7 @@ static enum num_status share_memory(struct tiling *t, struct window_kept *kept)
 /* The kernel of a number from the plane that put_kernel() filled. */
 static void put_table(const struct tiling *t, double scale, double *table)
 {
+	memset(table, 0, table_size(t) * sizeof *table);
 	for (int j = -t->reach_y; j <= t->reach_y; j++, table += table_width(t)) {
 		size_t y = j < 0 ? t->y.points - (size_t)-j : (size_t)j;
 		double *row = table + TOGETHER - 1 + t->reach_x;
@@ -551,7 +552,7 @@ static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
 	}
 	if (!found) {
 		fft_free(s->memory);
-		*s = (struct window_spectra){ .memory = fft_alloc(spectra + table),
+		*s = (struct window_spectra){ .memory = fft_alloc_unset(spectra + table),
 			.nx = t->x.points,
 			.ny = t->y.points,
 			.name = t->w->name,
