@@ -1,17 +1,9 @@
 /* shapes.c - the coordinates of the bank, see bank.h and bank_state.h */
 #include "life/trend/bank_state.h"
 
-/* The weights and the changes of regime to come (passage.c) were chosen together (scores:
- * doc/benchmarks.md) by a random search over every other of 31 measured series, the
- * first 13 kinds of tests/long/lives.c and the sigmoid, 24 to 40 paths of each with other
- * seeds, and 30 pumps of scripts/synthetic-pump with other seeds.  It minimised the mean
- * logarithm of the CRPS, with penalties for a coverage below 0.83 of any kind, for
- * measured series outside of 0.88 to 0.93 and for fifths of theirs outside of 0.12 to
- * 0.25.  Coordinates of little weight were dropped or, with a weight below -2, serve
- * their families alone; the others were rounded.  The weights of the exponentials and of
- * saturation with power 1/2 were swept again later, those of the first damage rate and of
- * the root of time with exact tangents: see "Weights with exact tangents" in
- * doc/trends.md. */
+/* The weights and the changes of regime to come (passage.c) were chosen together, see
+ * "The first search" in doc/trends.md.  Coordinates with a weight below -2 serve their
+ * families alone. */
 static const struct bank_shape table[] = {
 	{ BANK_LINEAR, 3.5, .par = 0 },
 	{ BANK_RATE, 1.3, .par = 1 },
