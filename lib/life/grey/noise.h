@@ -7,9 +7,7 @@
 #ifndef LIFE_NOISE_H
 #define LIFE_NOISE_H
 
-/* Residuals kept.  With the last 40, the errors of filtered states are 1 % larger (200
- * series of ten simulated kinds); with the noise of a bank of straight lines in place of
- * second differences 1.3 %, and those of predictions 0.5 %. */
+/* Residuals kept: see "Single constants" in doc/trends.md. */
 enum { NOISE_WINDOW = 256 };
 
 /* All 0 at first. */

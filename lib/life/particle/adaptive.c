@@ -7,17 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows whose errors tell what is usual.  The errors of the predictions of 31 measured
- * series and of 12 simulated kinds, over those of the last value, are .239 and .784 with
- * the last 10, .235 and .783 with the last 20. */
-enum { RECENT = 20 };
+enum { RECENT = 20 }; /* rows whose errors tell what is usual */
 /* States that determine a grey model; fewer are continued by the last one. */
 enum { MODEL = 3 };
 
 /* Of an observation, in recent errors of noise and model: farther than this from what was
- * expected it is an outlier, and no particle that far from it follows it.  The errors of
- * the states of the simulated kinds above are .396 with 20, .402 with 10 and .413 with 5,
- * those of outliers .178, .147 and .135. */
+ * expected it is an outlier, and no particle that far from it follows it.  This and
+ * RECENT were swept: see "Single constants" in doc/trends.md. */
 static const double OUTLYING = 10;
 
 /* The sums of a grey fit: x about a centre, u the integral of the states from the oldest

@@ -14,10 +14,7 @@ enum {
 };
 
 /* Log prior of all paths together, relative to the coordinates of the bank, whose priors
- * sum to e^4.3.  From 4 over 5 to 5.8 the CRPS of the measured series with a fleet falls
- * from 3.9 over 3.6 to 3.3 % of life, pooled; with a unit of another kind in the fleet,
- * whose life is twice as long, the median error of 12 cracks at 40 % of their life rises
- * from 5.6 over 5.7 to 5.9 %, and at 6.4 it is 5.9 % too. */
+ * sum to e^4.3: see "Single constants" in doc/trends.md. */
 static const double KINSHIP = 6.4;
 
 struct unit {

@@ -168,16 +168,11 @@ static enum partition_status reading(
 	struct partition *p, struct class *c, enum realisations_status status)
 {
 	p->culprit_realisation = realisations_culprit(c->reader);
-	switch (status) {
-	case REALISATIONS_OK:
-		return PARTITION_OK;
-	case REALISATIONS_AGAIN:
+	if (status == REALISATIONS_AGAIN)
 		return PARTITION_APART;
-	case REALISATIONS_STOP:
-		return c->twice ? PARTITION_TWICE : PARTITION_MEMORY;
-	default:
-		return PARTITION_MEMORY;
-	}
+	if (status == REALISATIONS_STOP && c->twice)
+		return PARTITION_TWICE;
+	return status == REALISATIONS_OK ? PARTITION_OK : PARTITION_MEMORY;
 }
 
 void partition_part(struct partition *p, int class, long part)
@@ -271,20 +266,15 @@ static enum partition_status share_area(struct partition *p, double transition)
 			p->class[c].area = 0;
 		}
 	}
-	if (p->nclasses == 1) {
-		if (!given)
-			p->class[0].area = p->area;
-		return sum > p->area * (1 + 1e-9) ? PARTITION_AREA : PARTITION_OK;
-	}
-	if (!given) {
-		p->zone = transition * p->area;
-		p->class[p->order[0]].area = p->class[p->order[p->nclasses - 1]].area =
-			(p->area - p->zone) / 2;
-		return PARTITION_OK;
-	}
 	if (sum > p->area * (1 + 1e-9))
 		return PARTITION_AREA;
-	p->zone = fmax(p->area - sum, 0);
+	if (p->nclasses > 1)
+		p->zone = given ? fmax(p->area - sum, 0) : transition * p->area;
+	else if (!given)
+		p->class[0].area = p->area;
+	if (p->nclasses > 1 && !given)
+		p->class[p->order[0]].area = p->class[p->order[p->nclasses - 1]].area =
+			(p->area - p->zone) / 2;
 	return PARTITION_OK;
 }
 

@@ -8,10 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Halving or doubling one constant changes the geometric mean of the CRPS of the kinds of
- * tests/long/lives.c, 12 paths of each with other seeds, by per cent: PARTICLES +0.4 and
- * +0.1, BIRTHS +0.7 and -0.1, BREEDING +1.0 and +0.3, SCORED +3.2 and -1.3 (measured
- * series -6 and +5); CUT 2.5 and 4: +1.6 and -1.7. */
+/* Constants without a reason here were swept: see "Single constants" in doc/trends.md. */
 enum {
 	PARTICLES = 52,
 	BIRTHS = 4,   /* at a time */
@@ -20,31 +17,23 @@ enum {
 	HELD_GOOD = 3 /* rows running on the good side that tell a repair */
 };
 
-static const double SCORED = 18; /* rows that count in full, see weigh() */
-static const double CUT = 3;     /* of an innovation, see student_square() */
-/* The same limit for a row that is held back.  With 3 % of outliers and a burst of four,
- * limits of 3.5, 4, 6 and 8 give a CRPS of 24.1, 24.5, 24.6 and 24.2 % of life; 5 gives
- * 24.6 (700 paths of seven kinds of tests/long/lives.c with other seeds, as for HALT). */
-static const double SURPRISE = 5;
-/* Length of a gap, in usual gaps, beyond which the machine may have been idle.  Mean CRPS
- * of nine kinds of tests/long/lives.c, a third of the paths sampled at random times,
- * without a halt and after one and two of 0.02 to 0.5 lives: 2.5: 7.2, 9.5, 12.0; 3.5:
- * 7.0, 9.5, 12.0; 5: 6.9, 9.7, 12.2. */
+static const double SCORED = 18;  /* rows that count in full, see weigh() */
+static const double CUT = 3;      /* of an innovation, see student_square() */
+static const double SURPRISE = 5; /* the same of a row that is held back */
+/* Length of a gap, in usual gaps, beyond which the machine may have been idle. */
 static const double HALT = 3.5;
 /* Noise, as a share of the range to the threshold, below which no coordinate describes
  * the wear: else readings without noise, or all equal, would be foretold with certainty:
  * see "Least noise" in doc/trends.md. */
 static const double FINEST = 7.5e-4;
-/* Turn of a tangent up to which it follows to second order.  With .125 the CRPS is that
- * of exact tangents to .1 % (60 paths of each kind of tests/long/lives.c and of 32
- * others), and the time of a row less by a fifth. */
+/* Turn of a tangent up to which it follows to second order: the CRPS is that of exact
+ * tangents, and the time of a row less by a fifth. */
 static const double NEAR = 0.125;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
 /* The correlation of an innovation with those before is summed over the last rows, their
  * weight falling to 1 / e over this share of all: a rate that changes in cycles or steps
- * shows in no two successive rows.  Shares of 1/5, 1/10 and 1/20 cover .881, .886 and
- * .878 at 97 % of life, the last row alone .851 (16 kinds, 150 paths). */
+ * shows in no two successive rows. */
 static const double RECENT = 0.1;
 
 /* Log weight of a Wiener process in a curved coordinate, over that of one in a straight
@@ -214,9 +203,7 @@ static double follow(const struct bank *b, struct trend *tr, double damage,
 }
 
 /* The share of the way to the threshold that another unit has been through; elsewhere its
- * path is a guess.  A fleet of three units stopped at 40 % of life covers .82 of the ends
- * of 15 measured series with the whole prior, and .96 with this share of it, as many as
- * are covered without a fleet. */
+ * path is a guess. */
 static double seen_of(const struct bank *b, const struct bank_shape *s)
 {
 	double from = damage_of(b, b->par.direction * s->path[0].level),
@@ -529,36 +516,26 @@ static struct opinion opinion_of(const struct bank *b, double damage, double ste
 	return sum;
 }
 
-/* Widens the variance of the level by a jump of the damage to this value. */
-static void unsettle(struct bank *b, double damage, double jump)
+/* The level may have changed by a jump of the damage to this value, unless that is 0.  If
+ * a regime begins, the rate may differ from the one before by as much as that, and by
+ * this rate of the damage; NAN: none begins. */
+static void unsettle(struct bank *b, double damage, double jump, double rate)
 {
 	int n = 2 + b->par.n_loads;
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
+		double *x = state_of(b, tr), line[LINE],
+		       square = squared_slope(place_of(b, tr->shape, damage));
 
-		state_of(b, tr)[n] += jump * jump *
-				      squared_slope(place_of(b, tr->shape, damage)) *
-				      freedom_of(b, tr) / tr->sum;
-	}
-}
-
-/* A regime begins: the rate may differ from the one before by as much as that, and by
- * this rate of the damage. */
-static void renew(struct bank *b, double damage, double rate)
-{
-	int n = 2 + b->par.n_loads;
-
-	for (int i = 0; i < b->trends; i++) {
-		struct trend *tr = &b->trend[i];
-		double line[LINE], square = squared_slope(place_of(b, tr->shape, damage));
-
+		x[n] += jump * jump * square * freedom_of(b, tr) / tr->sum;
+		if (isnan(rate))
+			continue;
 		scale_trend(b, tr, grown(tr, b->age));
 		begin_regime(b, tr, 0);
 		line_at(b, tr, b->at, line);
-		state_of(b, tr)[n + n + 1] +=
-			(line[LINE_V] * line[LINE_V] + rate * rate * square) *
-			freedom_of(b, tr) / tr->sum;
+		x[n + n + 1] += (line[LINE_V] * line[LINE_V] + rate * rate * square) *
+				freedom_of(b, tr) / tr->sum;
 	}
 }
 
@@ -568,9 +545,7 @@ static void shift(struct bank *b, const struct row *r, int repaired)
 {
 	double damage = damage_of(b, r->y), jump = damage - b->level;
 
-	unsettle(b, damage, jump);
-	if (!repaired)
-		renew(b, damage, jump * b->unit / (r->t - b->last));
+	unsettle(b, damage, jump, repaired ? NAN : jump * b->unit / (r->t - b->last));
 	b->repairs += repaired;
 	b->jumped = 1;
 	b->counts.shifts++;
@@ -637,9 +612,7 @@ static double next_gap(const struct bank *b)
 	return b->previous * age / (age - b->previous);
 }
 
-/* Takes the idle time out of a row.  With halts of 0.1 to 0.8 lives after 5 to 16 rows
- * the CRPS of the first 13 kinds of tests/long/lives.c at 80 % of the rows is 3.6 % of
- * life; if halts are recognised from the 16th row on only, it is 4.9 %. */
+/* Takes the idle time out of a row. */
 static void leave_idle_time(struct bank *b, struct row *r)
 {
 	double step = (r->t - b->last) / b->unit, idle,
@@ -780,13 +753,9 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
-	if (event == BANK_REPAIR) {
-		unsettle(b, b->level, 1);
-		b->repairs++;
-		b->jumped = 1;
-	} else {
-		renew(b, b->level, 0);
-	}
+	unsettle(b, b->level, event == BANK_REPAIR, event == BANK_REPAIR ? NAN : 0);
+	b->repairs += event == BANK_REPAIR;
+	b->jumped |= event == BANK_REPAIR;
 	return 1;
 }
 

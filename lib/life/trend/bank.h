@@ -82,10 +82,10 @@ double bank_path_age(
  * over the age at which another unit had D. */
 struct bank_shape {
 	unsigned family;
-	double scale, par, power;
-	int of_value;     /* 1: scale is instead the value at D = 0 over the way
-			   * to the threshold; without one above 0 g is 1 */
 	double log_prior; /* of a path: of all paths together */
+	double scale, par, power;
+	int of_value; /* 1: scale is instead the value at D = 0 over the way
+		       * to the threshold; without one above 0 g is 1 */
 	const struct bank_point *path; /* [n], both of them rising */
 	int n;                         /* 0: no path, else 2 or more */
 	double seen;                   /* level up to which it is not extrapolated */

@@ -6,10 +6,7 @@
 #include <string.h>
 
 /* Standard deviation of the effect of a covariate at its largest distance from the first
- * value, as a share of the rate.  Mean CRPS of simulated paths, straight, cracks, roots
- * and Wiener, whose covariate alternates, oscillates or is random and scales the rate by
- * 1, 3 and 9, 640 paths each: without a covariate 6.9, 11.0, 15.5; 0.5: 7.2, 9.4, 13.8;
- * 1: 7.4, 9.4, 13.3; 2: 7.6, 9.6, 13.6; 4: 7.8, 9.9, 14.0. */
+ * value, as a share of the rate: see "Single constants" in doc/trends.md. */
 static const double EFFECT = 1;
 
 static double effect(const struct load *l, double x)

@@ -13,19 +13,15 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
  * growth of a rate of 0 too. */
 static const double NOTHING = 3e3;
 
-/* The chance of a rate above 0 below which the damage does not grow.  .02, 1e-3 and 1e-6
- * give a CRPS of 24.0, 23.9 and 23.7 % of life with bursts (45 kinds, 10 paths). */
+/* The chance of a rate above 0 below which the damage does not grow: see "Single
+ * constants" in doc/trends.md. */
 static const double UNLIKELY = 1e-3;
 
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
  * and on the paths of other units, for all of them together: hazard c, share of falls,
  * and median growth in units of the reciprocal of how long a regime lasts.  One that
  * grows may still fall.  These and the three constants below were chosen with the weights
- * of the coordinates, see shapes.c; all where the rate is constant, hazard and growth
- * where it rises, GROWTH_SD, WANDERING and five of the weights were swept again: see
- * doc/trends.md.  With one other unit, hazards of 0.1, 0.3,
- * 0.5 and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with
- * a CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
+ * of the coordinates, and swept again: see doc/trends.md. */
 static const struct future {
 	double hazard, falls, growth;
 } future[] = { { 2.5, 0.24, 3.5 }, { 0.65, 0.27, 16 }, { 0.5, 0.033, 1.3 },

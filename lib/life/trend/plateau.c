@@ -3,11 +3,8 @@
 #include "num/running.h"
 #include <math.h>
 
-/* The last means that lie on a line, at least.  With 8, 10 and 12 of them, 93, 83 and 73
- * of 160 ceilings are found at 95 % of the life, and 3, 3 and 2 of 3600 records of units
- * without any fault seem to have stopped, and 28 and 14 (8, 10) of 1800 rounded ones.
- * With SLOW .05 and .15, 73 and 84 ceilings are found, and 0 and 5 of the records. */
-enum { LEVEL = 10 };
+/* See "Single constants" in doc/trends.md. */
+enum { LEVEL = 10 }; /* the last means that lie on a line, at least */
 static const double SLOW = 0.1;
 /* Damage at which a unit, at the rate so far, would fail within ten times its age, the
  * default horizon: below it lives are not known anyway, and run-in has just ended. */

@@ -45,11 +45,8 @@ static double factor_at(const double *y, int n, double *steps)
 }
 
 /* Courses are told apart by a largest step of AWAY times the steps along each of them,
- * with TURNS changes between them and as many values on each.  Of 200 000 windows of
- * normal noise 7 look like that, of uniform noise 68, and with 5 % of outliers that are
- * all equal 161; of two machines 10 and 20 standard deviations apart in random order .57
- * and .88 do, in turn .70 and 1.  With AWAY 9 these are 0, 20, 161; .38, .88, .49 and 1.
- */
+ * with TURNS changes between them and as many values on each: see "Single constants" in
+ * doc/trends.md. */
 static const double AWAY = 8;
 enum { TURNS = 5 };
 

@@ -1,40 +1,26 @@
 /* shapes.c - the coordinates of the bank, see bank.h and bank_state.h */
 #include "life/trend/bank_state.h"
 
-#define SATURATING(s, p, w, prior)                                                 \
-	{                                                                          \
-		.family = BANK_SATURATING, .scale = (s), .par = (p), .power = (w), \
-		.log_prior = (prior)                                               \
-	}
-
-/* The weights and the changes of regime to come (passage.c) were chosen together (scores:
- * doc/benchmarks.md) by a random search over every other of 31 measured series, the
- * first 13 kinds of tests/long/lives.c and the sigmoid, 24 to 40 paths of each with other
- * seeds, and 30 pumps of scripts/synthetic-pump with other seeds.  It minimised the mean
- * logarithm of the CRPS, with penalties for a coverage below 0.83 of any kind, for
- * measured series outside of 0.88 to 0.93 and for fifths of theirs outside of 0.12 to
- * 0.25.  Coordinates of little weight were dropped or, with a weight below -2, serve
- * their families alone; the others were rounded.  The weights of the exponentials and of
- * saturation with power 1/2 were swept again later, those of the first damage rate and of
- * the root of time with exact tangents: see "Weights with exact tangents" in
- * doc/trends.md. */
+/* The weights and the changes of regime to come (passage.c) were chosen together, see
+ * "The first search" in doc/trends.md.  Coordinates with a weight below -2 serve their
+ * families alone. */
 static const struct bank_shape table[] = {
-	{ .family = BANK_LINEAR, .log_prior = 3.5 },
-	{ .family = BANK_RATE, .par = 1, .log_prior = 1.3 },
-	{ .family = BANK_RATE, .par = 2, .log_prior = 1 },
-	{ .family = BANK_RATE, .par = 3, .log_prior = -4.1 },
-	{ .family = BANK_EXPONENTIAL, .scale = 0.05, .par = 1, .log_prior = 1.1 },
-	{ .family = BANK_EXPONENTIAL, .scale = 0.12, .par = 1, .log_prior = -0.8 },
-	{ .family = BANK_POWER, .scale = 0.05, .par = -1, .log_prior = 0.3 },
-	{ .family = BANK_POWER, .scale = 0.3, .par = 1.5, .log_prior = -2.8 },
-	{ .family = BANK_POWER, .scale = 0.3, .par = 2, .log_prior = 3.1 },
-	SATURATING(0, 0.99, 1, -2),
-	SATURATING(0, 0.8, 1, -1.5),
-	SATURATING(10, 0.95, 1, -2),
-	SATURATING(100, 0.99, 1, -1.7),
-	SATURATING(2000, 0.92, 1, 1),
-	SATURATING(10, 0.95, 0.5, -0.6),
-	SATURATING(100, 0.95, 0.5, -0.5),
+	{ BANK_LINEAR, 3.5, .par = 0 },
+	{ BANK_RATE, 1.3, .par = 1 },
+	{ BANK_RATE, 1, .par = 2 },
+	{ BANK_RATE, -4.1, .par = 3 },
+	{ BANK_EXPONENTIAL, 1.1, .scale = 0.05, .par = 1 },
+	{ BANK_EXPONENTIAL, -0.8, .scale = 0.12, .par = 1 },
+	{ BANK_POWER, 0.3, .scale = 0.05, .par = -1 },
+	{ BANK_POWER, -2.8, .scale = 0.3, .par = 1.5 },
+	{ BANK_POWER, 3.1, .scale = 0.3, .par = 2 },
+	{ BANK_SATURATING, -2, .scale = 0, .par = 0.99, .power = 1 },
+	{ BANK_SATURATING, -1.5, .scale = 0, .par = 0.8, .power = 1 },
+	{ BANK_SATURATING, -2, .scale = 10, .par = 0.95, .power = 1 },
+	{ BANK_SATURATING, -1.7, .scale = 100, .par = 0.99, .power = 1 },
+	{ BANK_SATURATING, 1, .scale = 2000, .par = 0.92, .power = 1 },
+	{ BANK_SATURATING, -0.6, .scale = 10, .par = 0.95, .power = 0.5 },
+	{ BANK_SATURATING, -0.5, .scale = 100, .par = 0.95, .power = 0.5 },
 };
 
 enum { SHAPES = sizeof table / sizeof *table };
