@@ -1,6 +1,6 @@
-/* calibrate.c - see calibrate.h */
-#include "signal/learn/calibrate.h"
+/* calibrate.c - see calibration.h */
 #include "num/dot.h"
+#include "signal/learn/calibration.h"
 #include "signal/learn/find_lines.h"
 #include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"

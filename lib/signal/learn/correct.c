@@ -1,6 +1,6 @@
-/* correct.c - see correct.h */
-#include "signal/learn/correct.h"
+/* correct.c - see examples.h */
 #include "num/dot.h"
+#include "signal/learn/examples.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

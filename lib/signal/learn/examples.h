@@ -1,5 +1,5 @@
-/* examples.h - clear short sections of a record to which its pulse is fitted; for
- * lib/signal/learn only
+/* examples.h - clear short sections of a record to which its pulse is fitted, and the
+ * parameters of the instrument that are learned by them; for lib/signal/learn only
  *
  * All is in units of the noise.
  */
@@ -7,6 +7,7 @@
 #define SIGNAL_EXAMPLES_H
 
 #include "signal/learn/calibration.h"
+#include "signal/learn/template.h"
 #include <stddef.h>
 
 enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };
@@ -97,5 +98,57 @@ double examples_gain(const struct examples *ex, const struct example *e);
 int examples_pulses(const struct examples *ex); /* number of them in all */
 /* 1 if the largest number of pulses was found: there may be more. */
 int examples_full(const struct examples *ex);
+
+/* --- find_shape.c: the shape that describes some clear examples best */
+
+/* Uses the pulse found in the record, whose shape c then owns. */
+void find_shape_take(struct calibration *c, struct template *found);
+/* Of those of sensor.h, reversed or not, with an approximate duration.  low: lag of the
+ * lowest autocorrelation; hint: the pulse taken from the record, which is tried first, or
+ * NULL. */
+enum separate_status find_shape_known(struct examples *ex, double low,
+	const struct template *hint, struct calibration *c);
+/* Of the clearest single events, if it costs less than the pulse of c; else
+ * SEPARATE_HARD. */
+enum separate_status find_shape_single(struct examples *ex, struct calibration *c);
+
+/* --- tune.c: duration, gain, width and drift of the gain of least chi-square */
+
+/* Adjusts duration and gain of the scene, unless they are known. */
+void tune(struct examples *ex, double step, int rounds);
+/* The same in turn with the pulses of the examples, for the scene and c. */
+enum separate_status tune_pulse(struct examples *ex, struct calibration *c);
+/* The same with all parameters. */
+enum separate_status tune_all(struct examples *ex, struct calibration *c);
+
+/* --- learn_scatter.c: what pulses have of their own */
+
+/* Sets the scatter of widths and ratios of the scene and of c (joint.h); 1 if there is
+ * some. */
+int learn_scatter(struct examples *ex, struct calibration *c);
+
+/* --- correct.c: correction of a pulse that differs from those of sensor.h
+ *
+ * The mean residual around all pulses of the examples is not noise but an error of the
+ * shape. */
+
+/* 1 if the shape may be wrong: when only large pulses may overlap others, a significant
+ * chi-square remains or pulses vanish.  On return the examples are fitted as before. */
+int correct_doubtful(struct examples *ex, struct calibration *c);
+/* Adds the mean residual to the shape of c if that describes the examples better. */
+enum num_status correct_shape(struct examples *ex, struct calibration *c);
+
+/* --- origin.c: arrival at sensor 2 where its pulses have another width
+ *
+ * A shape taken from the record has no origin of its own: the arrival is where the shape
+ * puts it.  At both sensors that is the same, unless their pulses differ in width: what
+ * leads the arrival by a share of a pulse leads it by more in a longer pulse.  Whatever
+ * filter both channels have passed, the cross-correlation of their pulses is symmetric
+ * about the delay if the pulse before the filter is symmetric, or antisymmetric, about
+ * its arrival. */
+
+/* Fills origin and origin_se of c from the pulses of the examples, as last fitted.
+ * NUM_MEMORY. */
+enum num_status find_origin(struct examples *ex, struct calibration *c);
 
 #endif

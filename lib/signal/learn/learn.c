@@ -2,12 +2,7 @@
 #include "signal/learn/learn.h"
 #include "num/sigmas.h"
 #include "signal/detect/spikes.h"
-#include "signal/learn/correct.h"
 #include "signal/learn/examples.h"
-#include "signal/learn/find_shape.h"
-#include "signal/learn/learn_scatter.h"
-#include "signal/learn/origin.h"
-#include "signal/learn/tune.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* learn.h - the pulse of a record, learned from the clearest stretches of it
  *
- * What calibrate.h does once lag, tones and noise are known: the clearest short sections
- * are fitted jointly under each shape (examples.h), duration and gain are chosen by least
- * chi-square, and the shape is given what the residuals of all pulses have in common
- * where that is more than noise (correct.h).
+ * What calibration.h does once lag, tones and noise are known: the clearest short
+ * sections are fitted jointly under each shape (examples.h), duration and gain are chosen
+ * by least chi-square, and the shape is given what the residuals of all pulses have in
+ * common where that is more than noise (correct.c).
  */
 #ifndef SIGNAL_LEARN_H
 #define SIGNAL_LEARN_H

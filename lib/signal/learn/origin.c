@@ -1,6 +1,6 @@
-/* origin.c - see origin.h */
-#include "signal/learn/origin.h"
+/* origin.c - see examples.h */
 #include "num/fft.h"
+#include "signal/learn/examples.h"
 #include <math.h>
 #include <string.h>
 
