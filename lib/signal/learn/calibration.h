@@ -82,7 +82,6 @@ struct calibration {
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */
-	double rest[2];             /* residual power of the fitted pulses over noise^2 */
 	struct shape *shape;
 	int pulse;     /* enum pulse_shape */
 	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */

@@ -343,8 +343,7 @@ static enum joint_status fit_example(
 
 double examples_fit(struct examples *ex, double misfit)
 {
-	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
-		scatter[EXAMPLES_MAX];
+	double each[EXAMPLES_MAX], share[EXAMPLES_MAX], scatter[EXAMPLES_MAX];
 	int isolated = 0;
 
 	ex->penalised = ex->dof = ex->excess = ex->energy = 0;
@@ -366,19 +365,12 @@ double examples_fit(struct examples *ex, double misfit)
 		each[i] = result.chi2 / (double)result.dof;
 		share[i] = (result.chi2 - (double)result.dof) / energy;
 		scatter[i] = sqrt(2 * (double)result.dof) / energy;
-		for (int c = 0; c < 2; c++) {
-			const double *r = joint_residual(ex->joint, c);
-
-			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
-		}
 		ex->penalised += cost_of(ex, &result, e->m);
 		ex->dof += (double)result.dof;
 		e->excess = result.chi2 - (double)result.dof;
 		ex->excess += e->excess;
 	}
 	ex->penalised /= ex->dof > 0 ? ex->dof : 1;
-	for (int c = 0; c < 2; c++)
-		ex->rest[c] = robust_median(rest[c], (size_t)ex->count);
 	learn_misfit(ex, share, scatter, 2 * isolated > ex->count);
 	return robust_median(each, (size_t)ex->count);
 }

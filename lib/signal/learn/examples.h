@@ -57,7 +57,6 @@ struct examples {
 	int corrected;    /* 1: the shape is one of twenty parameters, else of two */
 	double penalised; /* their chi-square and twice the threshold for each pulse, per
 			 degree */
-	double rest[2];   /* power of either channel's residual, that of its noise 1 */
 	double before;    /* work done before */
 	/* SEPARATE_MEMORY after a function was out of memory, SEPARATE_HARD after the
 	 * limit of work was exceeded; the results are invalid then. */

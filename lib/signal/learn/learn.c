@@ -148,7 +148,6 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 		c->work += joint_work(ex.joint);
 	c->events = examples_pulses(&ex);
 	c->drift = ex.drift;
-	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(ex.misfit, ex.share);
 	c->corrected = ex.corrected;
 	learn_range(&ex, c);

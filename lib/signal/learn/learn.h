@@ -17,7 +17,7 @@
  * which spreads them. */
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 	const unsigned char *hidden[2]);
-/* Fills shape, duration, gain, range of delays, chi2, penalised, rest and events of c
+/* Fills shape, duration, gain, range of delays, chi2, penalised and events of c
  * from y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these;
  * found: the pulse taken from these, which is tried first, its shape NULL where there is
  * none.
