@@ -141,6 +141,32 @@ enum joint_status examples_refine(struct examples *ex, const struct example *e,
 				       e->n, pulse, e->m, result));
 }
 
+double examples_amplitude(const struct examples *ex, const struct example *e, int p)
+{
+	return e->pulse[p / 2].a * (p % 2 ? examples_gain(ex, e) : 1);
+}
+
+void examples_add_residual(const struct examples *ex, const struct example *e, int p,
+	double width, int half, double *sum, double *weight)
+{
+	const struct joint_pulse *pulse = &e->pulse[p / 2];
+	const double *r = joint_residual(ex->joint, p % 2);
+	double stretch = (1 + pulse->delta / ex->scene.transit) * width;
+	double t0 = pulse->t + (p % 2 ? pulse->delta : 0),
+	       a = examples_amplitude(ex, e, p);
+
+	for (int k = -half; k <= half; k++) {
+		double t = t0 + k * stretch, u = t - floor(t);
+		size_t at = (size_t)t;
+
+		if (t < 0 || at + 1 >= e->n)
+			continue;
+		sum[k + half] += a * ((1 - u) * r[at] + u * r[at + 1]);
+		if (weight)
+			weight[k + half] += a * a;
+	}
+}
+
 double examples_chi2(struct examples *ex)
 {
 	double sum = 0, chi2;

@@ -86,6 +86,15 @@ void examples_keep(struct examples *ex);
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
+/* Amplitude of pulse p / 2 of an example at sensor 1 + p % 2. */
+double examples_amplitude(const struct examples *ex, const struct example *e, int p);
+/* Adds to sum[0 .. 2 half] the residual of this channel around this pulse, as last
+ * refined, times its amplitude, at the samples of one of the mean velocity and 1 / width
+ * as long; to weight, unless NULL, the square of the amplitude where there is a residual.
+ */
+void examples_add_residual(const struct examples *ex, const struct example *e, int p,
+	double width, int half, double *sum, double *weight);
+
 /* Share of the other channel in either one of the record; 0 where it is not certain.  The
  * pulses of an example are looked for in the other channel at the same time: in that one
  * they are a transit time earlier or later. */

@@ -370,10 +370,9 @@ static enum separate_status find_duration(
 	const struct calibrate_par *par = rec->par;
 	double length = (double)rec->n + (double)c->shift;
 
-	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
-		NUM_OK)
+	rec->low = look->lowest;
+	if (!(rec->low > 0) && find_low(rec, rec->y1, rec->y2, &rec->low) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
-	rec->low = look->lowest > 0 ? look->lowest : lowest_lag(rec->work, rec->n / 4);
 	if (find_width(rec, c) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!c->whitening.tap)
