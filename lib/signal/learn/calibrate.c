@@ -244,8 +244,7 @@ static const double HALF = 0.5;
 /* Work of learning with another range, over that with the first: the right range takes
  * 0.5 to 1.3 in 20 records of turbulent flow, and a range that lets pulses describe
  * bubbles 2.3 to 7 in 6 (scenes turbulent and group-turbulent of
- * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles).  That of plug flow
- * takes 0.04 among pulses with echoes that seem laminar. */
+ * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles).  */
 static const double MORE_WORK = 2;
 
 /* Learns the instrument with the range of velocities v, whose delays are those around the
@@ -273,11 +272,10 @@ static enum separate_status try_velocities(
 	return status;
 }
 
-/* Learns the instrument again with the range of delays of plug or of turbulent flow,
- * which is kept if the pulses describe the record, and better: a pulse beyond a range
- * that is too narrow takes two within it, and in one that is too wide two particles may
- * look like one. */
-static enum separate_status try_range(struct look *look, int wide, struct calibration *c)
+/* Learns the instrument again with the range of delays of turbulent flow, which is kept
+ * if the pulses describe the record, and better: a pulse beyond a range that is too
+ * narrow takes two within it. */
+static enum separate_status try_wide(struct look *look, struct calibration *c)
 {
 	struct calibrate_par limited = *look->par;
 	struct look again = look_with(look, &limited);
@@ -285,7 +283,7 @@ static enum separate_status try_range(struct look *look, int wide, struct calibr
 	enum separate_status status;
 
 	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->effort->work);
-	again.wide = wide;
+	again.wide = 1;
 	status = find(&again, &other);
 	if (status == SEPARATE_OK)
 		keep_better(c, &other);
@@ -375,17 +373,13 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	broad = v.slow > LAMINAR * v.fast;
 	if (broad)
 		status = try_velocities(&look, &v, c);
-	/* Pulses with echoes may seem to differ as much in plug flow. */
-	if (status == SEPARATE_OK &&
-		v.slow * (1 - CALIBRATE_WIDE) < v.fast * (1 + CALIBRATE_WIDE))
-		status = try_range(&look, 0, c);
-	else if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
+	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
 		status = find(&look, c);
 	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
 		status = try_velocities(&look, &v, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
-		status = try_range(&look, 1, c);
+		status = try_wide(&look, c);
 	if (status == SEPARATE_OK)
 		status = without_crosstalk(&look, c);
 	c->attempts = effort.attempts;
