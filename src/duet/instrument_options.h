@@ -3,7 +3,7 @@
 #define INSTRUMENT_OPTIONS_H
 
 #include "cli/opt.h"
-#include "signal/learn/calibrate.h"
+#include "signal/learn/calibration.h"
 
 /* Values of the options. */
 extern struct instrument_given {

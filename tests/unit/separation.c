@@ -3,7 +3,7 @@
 #include "signal/detect/align.h"
 #include "signal/detect/count.h"
 #include "signal/detect/sections.h"
-#include "signal/learn/calibrate.h"
+#include "signal/learn/calibration.h"
 #include "signal/mixture/masks.h"
 #include "signal/mixture/stft.h"
 #include "signal/noise/robust.h"

@@ -1,6 +1,6 @@
-/* calibrate.c - see calibrate.h */
-#include "signal/learn/calibrate.h"
+/* calibrate.c - see calibration.h */
 #include "num/dot.h"
+#include "signal/learn/calibration.h"
 #include "signal/learn/find_lines.h"
 #include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
@@ -176,44 +176,6 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 	return SEPARATE_OK;
 }
 
-/* Share of its energy in which a whitened pulse may differ from a known one, beside the
- * error of its shape; half and twice of it give the same rows in the records of BAD_FIT
- * in measure.c. */
-static const double KNOWN = 0.01;
-
-/* 1 if the noise has less than half of its largest power at the lowest frequencies. */
-static int is_high_passed(const double *power, size_t n)
-{
-	double most = 0;
-
-	for (size_t k = 0; k < n; k++)
-		most = fmax(most, power[k]);
-	return power[0] < 0.5 * most;
-}
-
-/* *lacks: 1 if whitening has made the pulse a known one but a filter has taken its low
- * frequencies; a pulse taken from the record then lacks them. */
-static enum separate_status lacks_low(
-	const struct look *look, const struct calibration *c, int *lacks)
-{
-	struct template white = { .shape = c->shape, .duration = c->duration };
-	struct whitening w;
-	enum num_status status;
-	double left = 1;
-
-	*lacks = 0;
-	if (!is_high_passed(look->noise.power, COLOUR_BINS))
-		return SEPARATE_OK;
-	status = whitening_of_noise(
-		&w, look->noise.power, look->noise.drift, COLOUR_BINS, WHITEN_FILTERED);
-	if (status != NUM_OK)
-		return of_whitening(status);
-	status = template_known(&white, w.seen, w.seen_half, &left);
-	*lacks = left <= KNOWN + c->misfit;
-	whitening_clear(&w);
-	return status == NUM_OK ? SEPARATE_OK : SEPARATE_MEMORY;
-}
-
 /* Whitens the noise and takes the pulse from that record; COLOURED if the pulse does not
  * describe it. */
 static enum separate_status attempt_white(struct look *look, struct calibration *c)
@@ -227,20 +189,10 @@ static enum separate_status attempt_white(struct look *look, struct calibration 
 	if (status == SEPARATE_MEMORY)
 		return status;
 	/* No filter makes noise that drifts. */
-	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
-		calibration_describes(c))
+	if (status == SEPARATE_OK && !c->dense &&
+		(look->noise.drift > 0 ? calibration_describes(c)
+				       : c->measured && calibration_stands(c)))
 		return status;
-	if (status == SEPARATE_OK && c->measured && !c->dense && calibration_stands(c)) {
-		int lacks = 0;
-
-		status = lacks_low(look, c, &lacks);
-		if (status == SEPARATE_OK && !lacks)
-			return status;
-		if (status == SEPARATE_MEMORY) {
-			calibration_clear(c);
-			return status;
-		}
-	}
 	calibration_clear(c);
 	return SEPARATE_COLOURED;
 }
@@ -292,8 +244,7 @@ static const double HALF = 0.5;
 /* Work of learning with another range, over that with the first: the right range takes
  * 0.5 to 1.3 in 20 records of turbulent flow, and a range that lets pulses describe
  * bubbles 2.3 to 7 in 6 (scenes turbulent and group-turbulent of
- * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles).  That of plug flow
- * takes 0.04 among pulses with echoes that seem laminar. */
+ * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles).  */
 static const double MORE_WORK = 2;
 
 /* Learns the instrument with the range of velocities v, whose delays are those around the
@@ -321,11 +272,10 @@ static enum separate_status try_velocities(
 	return status;
 }
 
-/* Learns the instrument again with the range of delays of plug or of turbulent flow,
- * which is kept if the pulses describe the record, and better: a pulse beyond a range
- * that is too narrow takes two within it, and in one that is too wide two particles may
- * look like one. */
-static enum separate_status try_range(struct look *look, int wide, struct calibration *c)
+/* Learns the instrument again with the range of delays of turbulent flow, which is kept
+ * if the pulses describe the record, and better: a pulse beyond a range that is too
+ * narrow takes two within it. */
+static enum separate_status try_wide(struct look *look, struct calibration *c)
 {
 	struct calibrate_par limited = *look->par;
 	struct look again = look_with(look, &limited);
@@ -333,7 +283,7 @@ static enum separate_status try_range(struct look *look, int wide, struct calibr
 	enum separate_status status;
 
 	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->effort->work);
-	again.wide = wide;
+	again.wide = 1;
 	status = find(&again, &other);
 	if (status == SEPARATE_OK)
 		keep_better(c, &other);
@@ -423,17 +373,13 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	broad = v.slow > LAMINAR * v.fast;
 	if (broad)
 		status = try_velocities(&look, &v, c);
-	/* Pulses with echoes may seem to differ as much in plug flow. */
-	if (status == SEPARATE_OK &&
-		v.slow * (1 - CALIBRATE_WIDE) < v.fast * (1 + CALIBRATE_WIDE))
-		status = try_range(&look, 0, c);
-	else if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
+	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
 		status = find(&look, c);
 	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
 		status = try_velocities(&look, &v, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
-		status = try_range(&look, 1, c);
+		status = try_wide(&look, c);
 	if (status == SEPARATE_OK)
 		status = without_crosstalk(&look, c);
 	c->attempts = effort.attempts;

@@ -1,5 +1,15 @@
 /* calibration.h - parameters of an instrument: those that the caller knows and those that
- * calibrate.h has learned from a record
+ * are learned from a two-sensor record
+ *
+ * From the beginning of a record: lag of the second sensor, interfering tones, noise of
+ * either channel, shape and duration of the pulses, ratio of the gains, range of the
+ * velocities.  Values known by the caller are not changed.
+ *
+ * The order is: tones from the periodogram; noise from the fourth difference; lag from
+ * the cross-correlation; duration from the lag at which the autocorrelation is lowest
+ * (which superposition does not change); then joint fits of the clearest sections under
+ * each shape, with duration and gain chosen by least chi-square, and a correction of the
+ * shape if all pulses have a common residual.
  */
 #ifndef SIGNAL_CALIBRATION_H
 #define SIGNAL_CALIBRATION_H
@@ -72,7 +82,6 @@ struct calibration {
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */
-	double rest[2];             /* residual power of the fitted pulses over noise^2 */
 	struct shape *shape;
 	int pulse;     /* enum pulse_shape */
 	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */
@@ -83,7 +92,7 @@ struct calibration {
 			 of what is learned from, per sample */
 	double width; /* of the pulses of sensor 2, over those of sensor 1 */
 	/* Samples by which the delay of a particle of the mean velocity exceeds that of
-	 * the fit, see origin.h, and the standard error, which all particles have in
+	 * the fit, see examples.h, and the standard error, which all particles have in
 	 * common. */
 	double origin, origin_se;
 	double crosstalk[2]; /* share of the other channel in either, with the sign of
@@ -130,6 +139,10 @@ enum separate_status {
 	SEPARATE_WIDE      /* pulses may last too long, or no time, within the spread */
 };
 
+/* x1, x2: n >= 64 finite samples.  On SEPARATE_OK *c is filled; free it with
+ * calibration_clear().  Otherwise only its work and its attempts are. */
+enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c);
 void calibration_clear(struct calibration *c);
 
 /* 1 if the pulse describes its record, by CALIBRATE_DESCRIBES. */

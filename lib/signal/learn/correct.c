@@ -1,6 +1,6 @@
-/* correct.c - see correct.h */
-#include "signal/learn/correct.h"
+/* correct.c - see examples.h */
 #include "num/dot.h"
+#include "signal/learn/examples.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,24 +42,9 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 
 		if (examples_refine(ex, e, e->pulse, &result) != JOINT_OK)
 			continue;
-		for (int p = 0; p < 2 * e->m; p++) {
-			const struct joint_pulse *pulse = &e->pulse[p / 2];
-			const double *r = joint_residual(ex->joint, p % 2);
-			double stretch = (1 + pulse->delta / ex->scene.transit) *
-					 (p % 2 ? ex->scene.width : 1);
-			double t0 = pulse->t + (p % 2 ? pulse->delta : 0);
-			double a = pulse->a * (p % 2 ? examples_gain(ex, e) : 1);
-
-			for (int k = -half; k <= half; k++) {
-				double t = t0 + k * stretch, u = t - floor(t);
-				size_t at = (size_t)t;
-
-				if (t < 0 || at + 1 >= e->n)
-					continue;
-				more[k + half] += a * ((1 - u) * r[at] + u * r[at + 1]);
-				weight[k + half] += a * a;
-			}
-		}
+		for (int p = 0; p < 2 * e->m; p++)
+			examples_add_residual(ex, e, p, p % 2 ? ex->scene.width : 1, half,
+				more, weight);
 	}
 	/* Far from the pulse few examples contribute. */
 	for (int k = 0; k <= 2 * half; k++)

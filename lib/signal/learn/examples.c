@@ -141,6 +141,32 @@ enum joint_status examples_refine(struct examples *ex, const struct example *e,
 				       e->n, pulse, e->m, result));
 }
 
+double examples_amplitude(const struct examples *ex, const struct example *e, int p)
+{
+	return e->pulse[p / 2].a * (p % 2 ? examples_gain(ex, e) : 1);
+}
+
+void examples_add_residual(const struct examples *ex, const struct example *e, int p,
+	double width, int half, double *sum, double *weight)
+{
+	const struct joint_pulse *pulse = &e->pulse[p / 2];
+	const double *r = joint_residual(ex->joint, p % 2);
+	double stretch = (1 + pulse->delta / ex->scene.transit) * width;
+	double t0 = pulse->t + (p % 2 ? pulse->delta : 0),
+	       a = examples_amplitude(ex, e, p);
+
+	for (int k = -half; k <= half; k++) {
+		double t = t0 + k * stretch, u = t - floor(t);
+		size_t at = (size_t)t;
+
+		if (t < 0 || at + 1 >= e->n)
+			continue;
+		sum[k + half] += a * ((1 - u) * r[at] + u * r[at + 1]);
+		if (weight)
+			weight[k + half] += a * a;
+	}
+}
+
 double examples_chi2(struct examples *ex)
 {
 	double sum = 0, chi2;
@@ -343,8 +369,7 @@ static enum joint_status fit_example(
 
 double examples_fit(struct examples *ex, double misfit)
 {
-	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
-		scatter[EXAMPLES_MAX];
+	double each[EXAMPLES_MAX], share[EXAMPLES_MAX], scatter[EXAMPLES_MAX];
 	int isolated = 0;
 
 	ex->penalised = ex->dof = ex->excess = ex->energy = 0;
@@ -366,19 +391,12 @@ double examples_fit(struct examples *ex, double misfit)
 		each[i] = result.chi2 / (double)result.dof;
 		share[i] = (result.chi2 - (double)result.dof) / energy;
 		scatter[i] = sqrt(2 * (double)result.dof) / energy;
-		for (int c = 0; c < 2; c++) {
-			const double *r = joint_residual(ex->joint, c);
-
-			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
-		}
 		ex->penalised += cost_of(ex, &result, e->m);
 		ex->dof += (double)result.dof;
 		e->excess = result.chi2 - (double)result.dof;
 		ex->excess += e->excess;
 	}
 	ex->penalised /= ex->dof > 0 ? ex->dof : 1;
-	for (int c = 0; c < 2; c++)
-		ex->rest[c] = robust_median(rest[c], (size_t)ex->count);
 	learn_misfit(ex, share, scatter, 2 * isolated > ex->count);
 	return robust_median(each, (size_t)ex->count);
 }

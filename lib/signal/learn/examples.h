@@ -1,5 +1,5 @@
-/* examples.h - clear short sections of a record to which its pulse is fitted; for
- * lib/signal/learn only
+/* examples.h - clear short sections of a record to which its pulse is fitted, and the
+ * parameters of the instrument that are learned by them; for lib/signal/learn only
  *
  * All is in units of the noise.
  */
@@ -7,6 +7,7 @@
 #define SIGNAL_EXAMPLES_H
 
 #include "signal/learn/calibration.h"
+#include "signal/learn/template.h"
 #include <stddef.h>
 
 enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };
@@ -56,7 +57,6 @@ struct examples {
 	int corrected;    /* 1: the shape is one of twenty parameters, else of two */
 	double penalised; /* their chi-square and twice the threshold for each pulse, per
 			 degree */
-	double rest[2];   /* power of either channel's residual, that of its noise 1 */
 	double before;    /* work done before */
 	/* SEPARATE_MEMORY after a function was out of memory, SEPARATE_HARD after the
 	 * limit of work was exceeded; the results are invalid then. */
@@ -86,6 +86,15 @@ void examples_keep(struct examples *ex);
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
+/* Amplitude of pulse p / 2 of an example at sensor 1 + p % 2. */
+double examples_amplitude(const struct examples *ex, const struct example *e, int p);
+/* Adds to sum[0 .. 2 half] the residual of this channel around this pulse, as last
+ * refined, times its amplitude, at the samples of one of the mean velocity and 1 / width
+ * as long; to weight, unless NULL, the square of the amplitude where there is a residual.
+ */
+void examples_add_residual(const struct examples *ex, const struct example *e, int p,
+	double width, int half, double *sum, double *weight);
+
 /* Share of the other channel in either one of the record; 0 where it is not certain.  The
  * pulses of an example are looked for in the other channel at the same time: in that one
  * they are a transit time earlier or later. */
@@ -97,5 +106,57 @@ double examples_gain(const struct examples *ex, const struct example *e);
 int examples_pulses(const struct examples *ex); /* number of them in all */
 /* 1 if the largest number of pulses was found: there may be more. */
 int examples_full(const struct examples *ex);
+
+/* --- find_shape.c: the shape that describes some clear examples best */
+
+/* Uses the pulse found in the record, whose shape c then owns. */
+void find_shape_take(struct calibration *c, struct template *found);
+/* Of those of sensor.h, reversed or not, with an approximate duration.  low: lag of the
+ * lowest autocorrelation; hint: the pulse taken from the record, which is tried first, or
+ * NULL. */
+enum separate_status find_shape_known(struct examples *ex, double low,
+	const struct template *hint, struct calibration *c);
+/* Of the clearest single events, if it costs less than the pulse of c; else
+ * SEPARATE_HARD. */
+enum separate_status find_shape_single(struct examples *ex, struct calibration *c);
+
+/* --- tune.c: duration, gain, width and drift of the gain of least chi-square */
+
+/* Adjusts duration and gain of the scene, unless they are known. */
+void tune(struct examples *ex, double step, int rounds);
+/* The same in turn with the pulses of the examples, for the scene and c. */
+enum separate_status tune_pulse(struct examples *ex, struct calibration *c);
+/* The same with all parameters. */
+enum separate_status tune_all(struct examples *ex, struct calibration *c);
+
+/* --- learn_scatter.c: what pulses have of their own */
+
+/* Sets the scatter of widths and ratios of the scene and of c (joint.h); 1 if there is
+ * some. */
+int learn_scatter(struct examples *ex, struct calibration *c);
+
+/* --- correct.c: correction of a pulse that differs from those of sensor.h
+ *
+ * The mean residual around all pulses of the examples is not noise but an error of the
+ * shape. */
+
+/* 1 if the shape may be wrong: when only large pulses may overlap others, a significant
+ * chi-square remains or pulses vanish.  On return the examples are fitted as before. */
+int correct_doubtful(struct examples *ex, struct calibration *c);
+/* Adds the mean residual to the shape of c if that describes the examples better. */
+enum num_status correct_shape(struct examples *ex, struct calibration *c);
+
+/* --- origin.c: arrival at sensor 2 where its pulses have another width
+ *
+ * A shape taken from the record has no origin of its own: the arrival is where the shape
+ * puts it.  At both sensors that is the same, unless their pulses differ in width: what
+ * leads the arrival by a share of a pulse leads it by more in a longer pulse.  Whatever
+ * filter both channels have passed, the cross-correlation of their pulses is symmetric
+ * about the delay if the pulse before the filter is symmetric, or antisymmetric, about
+ * its arrival. */
+
+/* Fills origin and origin_se of c from the pulses of the examples, as last fitted.
+ * NUM_MEMORY. */
+enum num_status find_origin(struct examples *ex, struct calibration *c);
 
 #endif

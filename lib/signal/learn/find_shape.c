@@ -1,9 +1,8 @@
-/* find_shape.c - see find_shape.h */
-#include "signal/learn/find_shape.h"
+/* find_shape.c - see examples.h */
 #include "num/sigmas.h"
 #include "signal/learn/crowd.h"
+#include "signal/learn/examples.h"
 #include "signal/learn/known_shape.h"
-#include "signal/learn/tune.h"
 #include <math.h>
 #include <stdlib.h>
 

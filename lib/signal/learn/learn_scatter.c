@@ -1,6 +1,6 @@
-/* learn_scatter.c - see learn_scatter.h */
-#include "signal/learn/learn_scatter.h"
+/* learn_scatter.c - see examples.h */
 #include "num/sigmas.h"
+#include "signal/learn/examples.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -370,10 +370,9 @@ static enum separate_status find_duration(
 	const struct calibrate_par *par = rec->par;
 	double length = (double)rec->n + (double)c->shift;
 
-	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
-		NUM_OK)
+	rec->low = look->lowest;
+	if (!(rec->low > 0) && find_low(rec, rec->y1, rec->y2, &rec->low) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
-	rec->low = look->lowest > 0 ? look->lowest : lowest_lag(rec->work, rec->n / 4);
 	if (find_width(rec, c) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (!c->whitening.tap)
@@ -487,27 +486,6 @@ static enum separate_status find_template(
 	if (is_known(found) && !c->whitening.tap)
 		template_clear(found);
 	return SEPARATE_OK;
-}
-
-/* Learns the pulse.  If the noise was measured in a band, a residual of the pulses below
- * it shows that the noise was overestimated. */
-static enum separate_status learn_with_noise(
-	struct record *rec, struct template *found, struct calibration *c)
-{
-	enum { ROUNDS = 4 };
-	enum separate_status status = learn(rec, found, c);
-
-	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
-		if (status != SEPARATE_OK || c->events == 0 ||
-			fmin(c->rest[0], c->rest[1]) >= 0.75)
-			break;
-		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
-		if (found->events)
-			status = find_template(rec, found, c);
-		if (status == SEPARATE_OK)
-			status = learn(rec, found, c);
-	}
-	return status;
 }
 
 /* Finds out why the pulses do not fit, or whether pulses were taken for coloured noise.
@@ -646,7 +624,7 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 		status = SEPARATE_NO_LAG;
 	look->effort->attempts += status == SEPARATE_OK;
 	if (status == SEPARATE_OK)
-		status = learn_with_noise(&rec, &look->found, c);
+		status = learn(&rec, &look->found, c);
 	if (status == SEPARATE_OK && c->measured && c->whitening.tap)
 		status = set_peak(raw, n, work, &look->found, c);
 	template_clear(&look->found);

@@ -1,4 +1,4 @@
-/* measure.h - the instrument measured from a record, once (see calibrate.h)
+/* measure.h - the instrument measured from a record, once (see calibration.h)
  *
  * Known or assumed filters of the record have been undone before.
  */

@@ -1,6 +1,6 @@
-/* origin.c - see origin.h */
-#include "signal/learn/origin.h"
+/* origin.c - see examples.h */
 #include "num/fft.h"
+#include "signal/learn/examples.h"
 #include <math.h>
 #include <string.h>
 
@@ -11,30 +11,6 @@ struct mean_pulse {
 	double complex *model; /* the same of the shape */
 	double energy;         /* sum of the squared amplitudes of its pulses */
 };
-
-/* Adds the residuals around the pulses of an example, in its own time over that of the
- * mean velocity. */
-static void add_residual(const struct examples *ex, const struct example *e, int half,
-	struct mean_pulse mean[2])
-{
-	for (int p = 0; p < 2 * e->m; p++) {
-		const struct joint_pulse *pulse = &e->pulse[p / 2];
-		const double *r = joint_residual(ex->joint, p % 2);
-		double stretch = 1 + pulse->delta / ex->scene.transit;
-		double t0 = pulse->t + (p % 2 ? pulse->delta : 0);
-		double a = pulse->a * (p % 2 ? examples_gain(ex, e) : 1);
-
-		mean[p % 2].energy += a * a;
-		for (int k = -half; k <= half; k++) {
-			double t = t0 + k * stretch, u = t - floor(t);
-			size_t at = (size_t)t;
-
-			if (t >= 0 && at + 1 < e->n)
-				mean[p % 2].x[k + half] +=
-					a * ((1 - u) * r[at] + u * r[at + 1]);
-		}
-	}
-}
 
 /* Phases of sensor 2 over those of sensor 1, where both stand above their noise: the
  * delay at which they agree best, and how much single frequencies differ from it beyond
@@ -94,8 +70,14 @@ enum num_status find_origin(struct examples *ex, struct calibration *c)
 		struct example *e = &ex->example[i];
 		struct joint_result result;
 
-		if (!e->outlier && examples_refine(ex, e, e->pulse, &result) == JOINT_OK)
-			add_residual(ex, e, half, mean);
+		if (e->outlier || examples_refine(ex, e, e->pulse, &result) != JOINT_OK)
+			continue;
+		for (int p = 0; p < 2 * e->m; p++) {
+			double a = examples_amplitude(ex, e, p);
+
+			mean[p % 2].energy += a * a;
+			examples_add_residual(ex, e, p, 1, half, mean[p % 2].x, NULL);
+		}
 	}
 	for (int k = 0; status == NUM_OK && k < 2; k++) {
 		double *model = x + 2 * stride;

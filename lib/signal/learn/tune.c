@@ -1,6 +1,6 @@
-/* tune.c - see tune.h */
-#include "signal/learn/tune.h"
+/* tune.c - see examples.h */
 #include "num/sigmas.h"
+#include "signal/learn/examples.h"
 #include "signal/learn/known_shape.h"
 #include <math.h>
 

@@ -1,7 +1,6 @@
 /* learning.c - the instrument of a record: learned from its first samples, or kept */
 #include "num/dot.h"
 #include "signal/detect/bursts.h"
-#include "signal/detect/spikes.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdint.h>

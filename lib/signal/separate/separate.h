@@ -1,6 +1,6 @@
 /* separate.h - a two-sensor record in, particles out, as the record comes
  *
- * The instrument is learned from the first learn samples (calibrate.h); if these contain
+ * The instrument is learned from the first learn samples (calibration.h); if these contain
  * no particle, half of them are skipped, and so on until there is one.  From then on the
  * record is cleaned, aligned and cut into sections (sections.h); each section is
  * separated by one of the methods: joint fit (joint.h) or masks (masks.h).  Sections
@@ -14,7 +14,7 @@
 #include "signal/detect/campbell.h"
 #include "signal/fit/joint.h"
 #include "signal/fit/verdict.h"
-#include "signal/learn/calibrate.h"
+#include "signal/learn/calibration.h"
 #include "signal/mixture/masks.h"
 #include "signal/separate/instrument.h"
 #include <stddef.h>
