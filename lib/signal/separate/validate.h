@@ -8,8 +8,8 @@
  * delay is at the edge of the range searched.  The variance of the flow is that of pulses
  * that stand alone.
  *
- * A weak pulse that recurs at one distance from a strong one of the same velocity is an
- * error of the shape of the strong one.
+ * A weak pulse that recurs at one distance from a strong one of the same velocity, as a
+ * like share of it, is an error of the shape of the strong one.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, or pulses do not stand out at both sensors, the record is not like
