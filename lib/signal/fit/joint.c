@@ -4,6 +4,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Inner products of p with x from first, first + stride, ... on; zero outside. */
+static void filter_at(const double *p, size_t len, const double *x, size_t n, long first,
+	size_t stride, double *out, size_t points)
+{
+	for (size_t k = 0; k < points;) {
+		long at = (long)(k * stride) + first;
+
+		if (k + 3 <= points && at >= 0 && (size_t)at + 2 * stride + len <= n) {
+			const double *const y[3] = { x + at, x + at + stride,
+				x + at + 2 * stride };
+
+			dot3(p, y, len, out + k);
+			k += 3;
+		} else {
+			out[k++] = dot_within(p, len, x, n, at);
+		}
+	}
+}
+
 /* Matched filter of the residual, for the pulse of this delay, on every stride-th sample,
  * per channel. */
 static size_t filter_residual(struct joint *j, double delta, size_t stride)
@@ -16,9 +35,8 @@ static size_t filter_residual(struct joint *j, double delta, size_t stride)
 		long first = shape_support(s->shape, 0, T, &len);
 
 		shape_sample(s->shape, 0, T, first, len, j->scratch, NULL, NULL);
-		for (size_t k = 0; k < points; k++)
-			j->filter[c][k] = dot_within(j->scratch, len, j->r[c], j->n,
-				(long long)(k * stride) + first);
+		filter_at(j->scratch, len, j->r[c], j->n, first, stride, j->filter[c],
+			points);
 	}
 	return points;
 }
