@@ -244,13 +244,14 @@ static const double HALF = 0.5;
 /* Work of learning with another range, over that with the first: the right range takes
  * 0.5 to 1.3 in 20 records of turbulent flow, and a range that lets pulses describe
  * bubbles 2.3 to 7 in 6 (scenes turbulent and group-turbulent of
- * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles).  */
+ * tests/matrix/scenes.tsv, also with bubbles, and group-bubbles). */
 static const double MORE_WORK = 2;
 
 /* Learns the instrument with the range of velocities v, whose delays are those around the
- * middle of the range.  HARD if the pulses do not describe the record. */
+ * middle of the range, with at most so much work.  HARD if the pulses do not describe the
+ * record. */
 static enum separate_status try_velocities(
-	struct look *look, const struct velocities *v, struct calibration *c)
+	struct look *look, const struct velocities *v, double most, struct calibration *c)
 {
 	struct calibrate_par limited = *look->par;
 	double lo = v->fastest / WIDER, hi = v->slowest * WIDER, low;
@@ -259,7 +260,7 @@ static enum separate_status try_velocities(
 
 	limited.lag = v->ratio * 0.5 * (lo + hi);
 	limited.spread = fmin((hi - lo) / (hi + lo), WIDEST);
-	limited.most *= HALF;
+	limited.most = most;
 	if (known_shape_duration(PULSE_SINE, 1, &low) != NUM_OK)
 		return SEPARATE_MEMORY;
 	wide.seen = 1;
@@ -272,19 +273,65 @@ static enum separate_status try_velocities(
 	return status;
 }
 
-/* Learns the instrument again with the range of delays of turbulent flow, which is kept
- * if the pulses describe the record, and better: a pulse beyond a range that is too
- * narrow takes two within it. */
-static enum separate_status try_wide(struct look *look, struct calibration *c)
+/* Learns the instrument with the range of delays of plug (0) or of turbulent flow (1),
+ * with at most so much work. */
+static enum separate_status find_within(
+	struct look *look, int wide, double most, struct calibration *c)
 {
 	struct calibrate_par limited = *look->par;
 	struct look again = look_with(look, &limited);
-	struct calibration other = { 0 };
-	enum separate_status status;
 
-	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->effort->work);
-	again.wide = 1;
-	status = find(&again, &other);
+	limited.most = fmin(limited.most, most);
+	again.wide = wide;
+	return find(&again, c);
+}
+
+/* Share of the work that may be done with nearly equal velocities where the pulses seem
+ * to differ. */
+static const double NARROW = 0.1;
+
+/* Learns the instrument where the durations of pulses seem to differ as in laminar flow:
+ * noise that is not white, filters and echoes make those of plug flow seem so, of which a
+ * narrow range needs a hundredth of the work.  The broad one is kept if the pulses then
+ * describe the record, and better. */
+static enum separate_status find_broad(
+	struct look *look, const struct velocities *v, struct calibration *c)
+{
+	const double all = look->par->most;
+	enum separate_status status = find_within(look, 0, NARROW * all, c), broad;
+	const int known = status == SEPARATE_OK && calibration_describes(c) && !c->dense;
+	struct calibration other = { 0 };
+
+	if (status == SEPARATE_MEMORY)
+		return status;
+	broad = try_velocities(look, v,
+		known ? fmin(all, (1 + MORE_WORK) * look->effort->work) : HALF * all,
+		&other);
+	if (broad == SEPARATE_MEMORY) {
+		calibration_clear(c);
+		return broad;
+	}
+	if (known && broad == SEPARATE_OK)
+		keep_better(c, &other);
+	if (known)
+		return SEPARATE_OK;
+	calibration_clear(c);
+	if (broad != SEPARATE_OK)
+		return find(look, c);
+	*c = other;
+	return SEPARATE_OK;
+}
+
+/* Learns the instrument again with the range of delays of turbulent flow, which is kept
+ * if the pulses describe the record, and better: a pulse beyond a range that is too
+ * narrow takes two within it, and in one that is too wide two particles may look like
+ * one. */
+static enum separate_status try_wide(struct look *look, struct calibration *c)
+{
+	struct calibration other = { 0 };
+	enum separate_status status =
+		find_within(look, 1, (1 + MORE_WORK) * look->effort->work, &other);
+
 	if (status == SEPARATE_OK)
 		keep_better(c, &other);
 	else
@@ -362,7 +409,7 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n, .effort = &effort };
 	struct velocities v = { 0 };
 	int broad;
-	enum separate_status status = SEPARATE_HARD;
+	enum separate_status status;
 
 	memset(c, 0, sizeof *c);
 	/* A filter that is to be undone has given the pulses lobes, which look like
@@ -371,12 +418,9 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 		isnan(par->duration) && find_velocities(&look, &v) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	broad = v.slow > LAMINAR * v.fast;
-	if (broad)
-		status = try_velocities(&look, &v, c);
-	if (status != SEPARATE_OK && status != SEPARATE_MEMORY)
-		status = find(&look, c);
+	status = broad ? find_broad(&look, &v, c) : find(&look, c);
 	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
-		status = try_velocities(&look, &v, c);
+		status = try_velocities(&look, &v, HALF * par->most, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
 		status = try_wide(&look, c);
