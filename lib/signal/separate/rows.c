@@ -33,7 +33,8 @@ static void tell_phase(
 			size;
 }
 
-/* Adds the origin of the pulses of sensor 2 (examples.h), which goes with the duration. */
+/* Adds the origin of the pulses of sensor 2 (examples.h), which goes with the duration.
+ */
 static void add_origin(const struct calibration *c, double delta, struct transit *out)
 {
 	double longer = 1 + delta / c->transit, alone = out->delay_se;

@@ -1,8 +1,8 @@
 /* separate.h - a two-sensor record in, particles out, as the record comes
  *
- * The instrument is learned from the first learn samples (calibration.h); if these contain
- * no particle, half of them are skipped, and so on until there is one.  From then on the
- * record is cleaned, aligned and cut into sections (sections.h); each section is
+ * The instrument is learned from the first learn samples (calibration.h); if these
+ * contain no particle, half of them are skipped, and so on until there is one.  From then
+ * on the record is cleaned, aligned and cut into sections (sections.h); each section is
  * separated by one of the methods: joint fit (joint.h) or masks (masks.h).  Sections
  * longer than window are separated window by window; pulses near the end of one are the
  * first guesses of the next.  The cuts depend on the record alone, so that the particles
