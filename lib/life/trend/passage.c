@@ -30,7 +30,7 @@ static const struct future {
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
 static const double WANDERING = 0.4;
-static const double GROWTH_SD = 2; /* of its logarithm */
+static const double GROWTH_SD = 1.4; /* of its logarithm */
 /* Mean and sd of the logarithm of the factor by which a fall of the rate lengthens the
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
