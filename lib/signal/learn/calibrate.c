@@ -294,7 +294,7 @@ static const double NARROW = 0.1;
 /* Work of a broad range over that with a narrow one that describes the record: laminar
  * flow of which it describes a part takes 4 (laminar-gauss of tests/matrix/scenes.tsv),
  * plug flow in coloured noise would take 20 to 170. */
-static const double BROAD_WORK = 10;
+static const double BROAD_WORK = 5;
 
 /* Learns the instrument where the durations of pulses seem to differ as in laminar flow:
  * noise that is not white, filters and echoes make those of plug flow seem so, of which a
