@@ -176,6 +176,44 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 	return SEPARATE_OK;
 }
 
+/* Share of its energy in which a whitened pulse may differ from a known one, beside the
+ * error of its shape; half and twice of it give the same rows in the records of BAD_FIT
+ * in measure.c. */
+static const double KNOWN = 0.01;
+
+/* 1 if the noise has less than half of its largest power at the lowest frequencies. */
+static int is_high_passed(const double *power, size_t n)
+{
+	double most = 0;
+
+	for (size_t k = 0; k < n; k++)
+		most = fmax(most, power[k]);
+	return power[0] < 0.5 * most;
+}
+
+/* *lacks: 1 if whitening has made the pulse a known one but a filter has taken its low
+ * frequencies; a pulse taken from the record then lacks them. */
+static enum separate_status lacks_low(
+	const struct look *look, const struct calibration *c, int *lacks)
+{
+	struct template white = { .shape = c->shape, .duration = c->duration };
+	struct whitening w;
+	enum num_status status;
+	double left = 1;
+
+	*lacks = 0;
+	if (!is_high_passed(look->noise.power, COLOUR_BINS))
+		return SEPARATE_OK;
+	status = whitening_of_noise(
+		&w, look->noise.power, look->noise.drift, COLOUR_BINS, WHITEN_FILTERED);
+	if (status != NUM_OK)
+		return of_whitening(status);
+	status = template_known(&white, w.seen, w.seen_half, &left);
+	*lacks = left <= KNOWN + c->misfit;
+	whitening_clear(&w);
+	return status == NUM_OK ? SEPARATE_OK : SEPARATE_MEMORY;
+}
+
 /* Whitens the noise and takes the pulse from that record; COLOURED if the pulse does not
  * describe it. */
 static enum separate_status attempt_white(struct look *look, struct calibration *c)
@@ -189,10 +227,20 @@ static enum separate_status attempt_white(struct look *look, struct calibration 
 	if (status == SEPARATE_MEMORY)
 		return status;
 	/* No filter makes noise that drifts. */
-	if (status == SEPARATE_OK && !c->dense &&
-		(look->noise.drift > 0 ? calibration_describes(c)
-				       : c->measured && calibration_stands(c)))
+	if (status == SEPARATE_OK && look->noise.drift > 0 && !c->dense &&
+		calibration_describes(c))
 		return status;
+	if (status == SEPARATE_OK && c->measured && !c->dense && calibration_stands(c)) {
+		int lacks = 0;
+
+		status = lacks_low(look, c, &lacks);
+		if (status == SEPARATE_OK && !lacks)
+			return status;
+		if (status == SEPARATE_MEMORY) {
+			calibration_clear(c);
+			return status;
+		}
+	}
 	calibration_clear(c);
 	return SEPARATE_COLOURED;
 }

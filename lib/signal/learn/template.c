@@ -335,6 +335,42 @@ void template_clear(struct template *t)
 	t->shape = NULL;
 }
 
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, double *left)
+{
+	int reach = (int)ceil(shape_reach(t->shape) * t->duration);
+	size_t n = 2 * (size_t)reach + 1;
+	double *p = malloc(2 * n * sizeof *p);
+	struct search s = { .half = reach, .p = p };
+	enum num_status status = p ? NUM_OK : NUM_MEMORY;
+
+	*left = 2;
+	if (p)
+		shape_sample(t->shape, 0, t->duration, -reach, n, p, NULL, NULL);
+	for (int k = 0; status == NUM_OK && k < PULSE_SHAPES; k++) {
+		struct shape *plain = shape_new((enum pulse_shape)k);
+
+		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration;
+			T *= 1.03) {
+			struct shape *seen = shape_filter(plain, T, tap, half);
+			double shift, rest;
+			int reversed;
+
+			if (!seen)
+				break;
+			rest = try_match(&s, reach, seen, T, p + n, &shift, &reversed);
+			if (!reversed)
+				*left = fmin(*left, rest);
+			shape_free(seen);
+		}
+		if (!plain)
+			status = NUM_MEMORY;
+		shape_free(plain);
+	}
+	free(p);
+	return status;
+}
+
 double template_peak(const struct template *t, const double *x1, size_t n)
 {
 	double peak = 0, weight = 0;

@@ -45,6 +45,11 @@ enum num_status template_find(struct template *t, const double *y1, const double
 	double width, double reach, int single);
 void template_clear(struct template *t);
 
+/* The share of the energy that the most similar pulse of sensor.h leaves after symmetric
+ * taps -half .. half; 2 if none of about this duration has its sign. */
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, double *left);
+
 /* Peak of the mean of x1[0 .. n), a record of the same events before its noise was made
  * white, for a pulse of amplitude 1. */
 double template_peak(const struct template *t, const double *x1, size_t n);
