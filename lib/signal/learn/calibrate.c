@@ -95,12 +95,13 @@ static enum separate_status attempt_kind(
 }
 
 /* Tries both explanations of noise that is not white: it was filtered with the pulses, or
- * coloured before they were added.  The better one is used; once more if its pulse is to
- * be corrected. */
+ * coloured before they were added.  The better one is used once more, with its pulse
+ * corrected. */
 static enum separate_status look_again(struct look *look, struct calibration *c)
 {
 	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
 	enum whiten_kind found = WHITEN_FILTERED;
+	double best = c->penalised;
 	int better = 0;
 
 	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -111,22 +112,16 @@ static enum separate_status look_again(struct look *look, struct calibration *c)
 			return status;
 		if (status != SEPARATE_OK)
 			continue;
-		if (other.penalised < c->penalised && !other.dense) {
-			calibration_clear(c);
-			*c = other;
+		if (other.penalised < best && !other.dense) {
+			best = other.penalised;
 			found = kinds[k];
 			better = 1;
-		} else {
-			calibration_clear(&other);
 		}
+		calibration_clear(&other);
 	}
 	if (!better)
 		return SEPARATE_OK;
 	look->settled = 1;
-	c->estimated = 1;
-	c->presumed_white = 0;
-	if (!learn_corrects_filter(c))
-		return SEPARATE_OK;
 	calibration_clear(c);
 	return attempt_kind(look, found, c);
 }

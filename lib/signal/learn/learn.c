@@ -48,11 +48,6 @@ static void learn_range(const struct examples *ex, struct calibration *c)
 	}
 }
 
-int learn_corrects_filter(const struct calibration *c)
-{
-	return c->chi2 > 1.1;
-}
-
 /* 1 if the shape is to be corrected by all pulses.  One given by the caller is kept,
  * except for the effect of an estimated filter; explanations of a colour are compared by
  * how well uncorrected known pulses fit.  One taken from a whitened record has the noise
@@ -63,7 +58,7 @@ static int wants_correction(struct examples *ex, struct calibration *c)
 	if (examples_full(ex))
 		return 0;
 	if (c->estimated)
-		return learn_corrects_filter(c);
+		return c->chi2 > 1.1;
 	if (ex->par->pulse != CALIBRATE_ANY_PULSE || ex->pieces ||
 		(c->whitening.tap && c->presumed_white && !c->measured))
 		return 0;

@@ -26,7 +26,4 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c);
 
-/* 1 if the shape is to be corrected for the effect of a filter that was estimated. */
-int learn_corrects_filter(const struct calibration *c);
-
 #endif

@@ -118,7 +118,8 @@ enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 		before = c->chi2;
 		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
 		c->penalised = ex->penalised;
-		if (c->presumed_white && c->chi2 > HOPELESS)
+		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
+			c->chi2 > HOPELESS)
 			break;
 		tune(ex, step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
