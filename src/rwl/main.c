@@ -157,7 +157,7 @@ static void write_rates(const struct paths *e, const char *cmd)
 	free(side);
 
 	for (long i = 0; i < count; i++) {
-		const struct path *path = &e->path[i];
+		const struct path *path = paths_get(e, i);
 
 		table_put_row(out,
 			(double[]){ (double)(first_path + i), path->wear.mean,

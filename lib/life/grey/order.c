@@ -14,33 +14,48 @@ struct order {
 		long rows; /* observations so far */
 		struct order_counts counts;
 	} now;
-	/* For each order, from 0 on: */
-	struct record {
-		struct grey fit;      /* of the points that end at the newest */
-		double error[WINDOW]; /* squared errors of the last rows, a ring */
-		double y, gap; /* of one of the last rows, a ring; since that before */
-	} of[];
+	struct observation {
+		double y, gap; /* since the one before */
+	} * last;              /* [largest], a ring */
+	struct grey *fit;      /* [largest + 1], of the points that end at the newest */
+	double *error;         /* [WINDOW][largest + 1] squared errors of the last rows */
 };
 
 struct order *order_new(const struct order_par *par)
 {
+	struct order *o = calloc(1, sizeof *o);
 	size_t orders = (size_t)par->largest + 1;
-	struct order *o = calloc(1, sizeof *o + orders * sizeof *o->of);
 
-	if (o)
-		o->par = *par;
-	return o;
+	if (!o)
+		return NULL;
+	o->par = *par;
+	o->last = calloc((size_t)par->largest, sizeof *o->last);
+	o->fit = calloc(orders, sizeof *o->fit);
+	o->error = calloc(orders * WINDOW, sizeof *o->error);
+	if (o->last && o->fit && o->error)
+		return o;
+	order_free(o);
+	return NULL;
 }
 
 void order_free(struct order *o)
 {
+	if (!o)
+		return;
+	free(o->last);
+	free(o->fit);
+	free(o->error);
 	free(o);
 }
 
 void order_pass(struct order *o, struct state *s)
 {
+	size_t orders = (size_t)o->par.largest + 1;
+
 	state_move(s, &o->now, sizeof o->now);
-	state_move(s, o->of, ((size_t)o->par.largest + 1) * sizeof *o->of);
+	state_move(s, o->last, (size_t)o->par.largest * sizeof *o->last);
+	state_move(s, o->fit, orders * sizeof *o->fit);
+	state_move(s, o->error, orders * WINDOW * sizeof *o->error);
 }
 
 static int orders_now(const struct order *o)
@@ -48,13 +63,21 @@ static int orders_now(const struct order *o)
 	return o->now.rows < o->par.largest ? (int)o->now.rows : o->par.largest;
 }
 
+/* Squared errors of all orders at a row of the last. */
+static double *errors_at(const struct order *o, long row)
+{
+	return o->error + (size_t)(row % WINDOW) * ((size_t)o->par.largest + 1);
+}
+
 /* Errors of the forecasts made for the row just taken, from the fits before it. */
 static void score(struct order *o, double y, double gap)
 {
-	for (int p = 1; p <= orders_now(o); p++) {
-		double e = y - grey_forecast(&o->of[p].fit, gap, gap);
+	double *error = errors_at(o, o->now.rows);
 
-		o->of[p].error[o->now.rows % WINDOW] = e * e;
+	for (int p = 1; p <= orders_now(o); p++) {
+		double e = y - grey_forecast(&o->fit[p], gap, gap);
+
+		error[p] = e * e;
 	}
 }
 
@@ -64,13 +87,13 @@ static void fit_orders(struct order *o, int low, int high)
 	double gap = 0;
 
 	for (int lag = 0; lag < high; lag++) {
-		const struct record *one =
-			&o->of[(o->now.rows - 1 - lag) % o->par.largest];
+		const struct observation *one =
+			&o->last[(o->now.rows - 1 - lag) % o->par.largest];
 
 		grey_add(&g, one->y, gap);
 		gap = one->gap;
 		if (g.n >= low)
-			o->of[g.n].fit = g;
+			o->fit[g.n] = g;
 	}
 	o->now.counts.tried += (unsigned long)(high - low + 1);
 }
@@ -89,11 +112,11 @@ static double criterion(const struct order *o, int p, int rows)
 	double sum = 0;
 
 	if (o->par.rule == ORDER_INSAMPLE)
-		return grey_residual(&o->of[p].fit);
+		return grey_residual(&o->fit[p]);
 	if (p > o->now.rows - rows)
 		return INFINITY; /* not scored over all of these rows */
 	for (int k = 1; k <= rows; k++)
-		sum += o->of[p].error[(o->now.rows - k) % WINDOW];
+		sum += errors_at(o, o->now.rows - k)[p];
 	return sum / rows;
 }
 
@@ -130,8 +153,7 @@ void order_add(struct order *o, double y, double gap)
 
 	if (o->par.rule == ORDER_WINDOW)
 		score(o, y, gap);
-	o->of[o->now.rows % o->par.largest].y = y;
-	o->of[o->now.rows++ % o->par.largest].gap = gap;
+	o->last[o->now.rows++ % o->par.largest] = (struct observation){ y, gap };
 	high = orders_now(o);
 	fit_orders(o, o->par.rule == ORDER_FIXED ? high : 1, high);
 	choose(o, high);
@@ -144,7 +166,7 @@ int order_chosen(const struct order *o)
 
 double order_forecast(const struct order *o, double h)
 {
-	return o->now.rows > 0 ? grey_forecast(&o->of[o->now.chosen].fit, h, h) : NAN;
+	return o->now.rows > 0 ? grey_forecast(&o->fit[o->now.chosen], h, h) : NAN;
 }
 
 struct order_counts order_counts(const struct order *o)

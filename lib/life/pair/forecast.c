@@ -8,6 +8,7 @@
 struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
+	const struct paths_par *draws; /* of paths */
 	struct observed observed;
 	struct bank *bank; /* NULL without a limit; unless RATE_FILTER, to tell repairs */
 	struct bank_chances *chances;
@@ -57,20 +58,20 @@ static enum num_status open_bank(struct forecast *f)
 
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par)
 {
-	const struct paths_par *draws = &paths->par;
 	struct forecast *f = calloc(1, sizeof *f);
 
 	if (!f)
 		return NULL;
 	f->par = *par;
 	f->paths = paths;
+	f->draws = paths_par(paths);
 	f->grey = NAN;
-	f->life = calloc((size_t)draws->count, sizeof *f->life);
-	f->later = calloc((size_t)draws->count, sizeof *f->later);
-	if (draws->rule == RATE_FILTER)
-		f->chances = bank_chances_new((int)draws->count,
-			draws->seed + draws->first * 0x9e3779b97f4a7c15u);
-	if (!f->life || !f->later || (draws->rule == RATE_FILTER && !f->chances)) {
+	f->life = calloc((size_t)f->draws->count, sizeof *f->life);
+	f->later = calloc((size_t)f->draws->count, sizeof *f->later);
+	if (f->draws->rule == RATE_FILTER)
+		f->chances = bank_chances_new((int)f->draws->count,
+			f->draws->seed + f->draws->first * 0x9e3779b97f4a7c15u);
+	if (!f->life || !f->later || (f->draws->rule == RATE_FILTER && !f->chances)) {
 		forecast_free(f);
 		return NULL;
 	}
@@ -97,12 +98,12 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	*passage = NULL;
 	if (f->bank && !run_in && later)
 		bank_add(f->bank, t, y);
-	if (f->paths->par.rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
+	if (f->draws->rule != RATE_FILTER || (f->bank && !bank_ready(f->bank)))
 		return NUM_OK;
 	*passage = f->later;
 	if (f->bank)
 		return bank_draw(f->bank, f->chances, t, f->threshold, f->later);
-	for (long i = 0; i < f->paths->par.count; i++)
+	for (long i = 0; i < f->draws->count; i++)
 		f->later[i] = INFINITY;
 	return NUM_OK;
 }
@@ -123,8 +124,8 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	/* the sum of the particles so far never falls */
-	if ((f->paths->par.rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) &&
-		!f->bank && !isnan(gap) && isfinite(pair_limit(pair)) && open_bank(f))
+	if ((f->draws->rule == RATE_FILTER || par->quantity != PAIR_DEBRIS) && !f->bank &&
+		!isnan(gap) && isfinite(pair_limit(pair)) && open_bank(f))
 		return NUM_MEMORY;
 	if (f->bank)
 		bank_load(f->bank, t, load);
@@ -165,7 +166,7 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 	for (long i = 0; i < f->n; i++)
 		f->later[i] = later_life(f->later[i], gone);
 	if (isnan(row.limit))
-		row.limit = f->paths->par.rule == RATE_FILTER && !par->scaled
+		row.limit = f->draws->rule == RATE_FILTER && !par->scaled
 				    ? 10 * (t - f->observed.first.t + par->skip)
 				    : INFINITY;
 	return row;
@@ -185,7 +186,7 @@ int forecast_contradicts(const struct forecast *f)
 {
 	double rate[2];
 
-	return f->paths->par.count >= 100 &&
+	return f->draws->count >= 100 &&
 	       paths_rates(f->paths, (double[]){ 0.005, 0.995 }, 2, rate) &&
 	       observed_rate_outside(&f->observed, rate[0], rate[1]);
 }

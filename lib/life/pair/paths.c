@@ -2,10 +2,19 @@
 #include "life/pair/paths.h"
 #include "num/passage.h"
 #include "num/rng.h"
+#include "num/running.h"
 #include "num/select.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
+
+struct paths {
+	struct paths_par par;
+	struct path *path;   /* NULL without fragments */
+	double mean;         /* of the component per step, by all fragments */
+	struct running logs; /* of the slopes of earlier units */
+	gsl_rng *rng;
+};
 
 /* A gamma variate of given mean and variance; the mean where the variance is 0. */
 static double draw_rate(double mean, double variance, gsl_rng *rng)
@@ -85,6 +94,16 @@ void paths_free(struct paths *e)
 		gsl_rng_free(e->rng);
 	free(e->path);
 	free(e);
+}
+
+const struct paths_par *paths_par(const struct paths *e)
+{
+	return &e->par;
+}
+
+const struct path *paths_get(const struct paths *e, long i)
+{
+	return e->path ? &e->path[i] : NULL;
 }
 
 int paths_rates(const struct paths *e, const double *level, int n, double *rate)

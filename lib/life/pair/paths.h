@@ -23,7 +23,6 @@
 
 #include "life/pair/observed.h"
 #include "life/prior/partition.h"
-#include "num/running.h"
 #include <gsl/gsl_rng.h>
 #include <stdint.h>
 
@@ -50,19 +49,15 @@ struct path {
 	long large_step;  /* first with too many large particles; 0: none */
 };
 
-/* All but the first two are of this file alone. */
-struct paths {
-	struct paths_par par;
-	struct path *path;   /* [par.count]; NULL without fragments */
-	double mean;         /* of the component per step, by all fragments */
-	struct running logs; /* of the slopes of earlier units */
-	gsl_rng *rng;
-};
+struct paths;
 
 /* partition is closed, or NULL if only observations are known.  NULL when out of memory.
  * par is copied; only this call reads partition. */
 struct paths *paths_new(const struct paths_par *par, struct partition *partition);
 void paths_free(struct paths *e);
+
+const struct paths_par *paths_par(const struct paths *e);
+const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
 /* Quantiles of the rate of the gap over the paths at n levels, in [0, 1), per s; 0: the
  * paths have none. */

@@ -61,7 +61,6 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 {
 	double truth = m->par.eol - t, wide = m->par.alpha * fabs(m->par.eol);
 	struct metrics_row r = { .truth = truth };
-	struct metrics_sum *s = &m->sum;
 
 	if (!(truth > 0) || isnan(point))
 		return NUM_DOMAIN;
@@ -74,21 +73,21 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 	r.crps =
 		metric_crps(sample, n, truth, m->par.limit > 0 ? m->par.limit : INFINITY);
 	if (share_within(sample, n, truth - wide, truth + wide) < 0.5)
-		s->horizon = 0;
-	else if (s->horizon == 0)
-		s->horizon = truth;
-	s->n++;
+		m->horizon = 0;
+	else if (m->horizon == 0)
+		m->horizon = truth;
+	m->n++;
 	if (isinf(point)) {
-		s->infinite++;
+		m->infinite++;
 	} else {
-		s->bias += r.error;
-		s->mae += fabs(r.error);
-		s->rmse += r.error * r.error;
-		s->accuracy += r.accuracy;
+		m->error += r.error;
+		m->abs_error += fabs(r.error);
+		m->square_error += r.error * r.error;
+		m->accuracy += r.accuracy;
 	}
-	s->crps += r.crps;
-	s->alpha_lambda += r.inside;
-	s->coverage += r.covered;
+	m->crps += r.crps;
+	m->inside += (size_t)r.inside;
+	m->covered += (size_t)r.covered;
 	if (row)
 		*row = r;
 	return NUM_OK;
@@ -96,16 +95,19 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 
 struct metrics_sum metrics_get(const struct metrics *m)
 {
-	struct metrics_sum s = m->sum;
-	double n = (double)s.n, finite = (double)(s.n - s.infinite);
+	double n = m->n ? (double)m->n : NAN;
+	double finite = m->n > m->infinite ? (double)(m->n - m->infinite) : NAN;
 
-	s.bias /= finite;
-	s.mae /= finite;
-	s.rmse = sqrt(s.rmse / finite);
-	s.accuracy /= finite;
-	s.alpha_lambda /= n;
-	s.horizon = s.n > 0 ? s.horizon : NAN;
-	s.coverage /= n;
-	s.crps /= n;
-	return s;
+	return (struct metrics_sum){
+		.n = m->n,
+		.infinite = m->infinite,
+		.bias = m->error / finite,
+		.mae = m->abs_error / finite,
+		.rmse = sqrt(m->square_error / finite),
+		.accuracy = m->accuracy / finite,
+		.alpha_lambda = (double)m->inside / n,
+		.horizon = m->n ? m->horizon : NAN,
+		.coverage = (double)m->covered / n,
+		.crps = m->crps / n,
+	};
 }

@@ -64,7 +64,10 @@ struct metrics_sum {
 /* Sums of the predictions so far; all 0 at first but par. */
 struct metrics {
 	struct metrics_par par;
-	struct metrics_sum sum; /* sums of what is averaged; the horizon so far */
+	size_t n, infinite, inside, covered;
+	double error, abs_error, square_error, accuracy, crps;
+	double horizon; /* truth at the start of the present run of good predictions; 0:
+			 * none */
 };
 
 /* Adds the prediction made at t, n >= 1 ascending samples; times must not decrease.  row

@@ -516,26 +516,36 @@ static struct opinion opinion_of(const struct bank *b, double damage, double ste
 	return sum;
 }
 
-/* The level may have changed by a jump of the damage to this value, unless that is 0.  If
- * a regime begins, the rate may differ from the one before by as much as that, and by
- * this rate of the damage; NAN: none begins. */
-static void unsettle(struct bank *b, double damage, double jump, double rate)
+/* Widens the variance of the level by a jump of the damage to this value. */
+static void unsettle(struct bank *b, double damage, double jump)
 {
 	int n = 2 + b->par.n_loads;
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
-		double *x = state_of(b, tr), line[LINE],
-		       square = squared_slope(place_of(b, tr->shape, damage));
 
-		x[n] += jump * jump * square * freedom_of(b, tr) / tr->sum;
-		if (isnan(rate))
-			continue;
+		state_of(b, tr)[n] += jump * jump *
+				      squared_slope(place_of(b, tr->shape, damage)) *
+				      freedom_of(b, tr) / tr->sum;
+	}
+}
+
+/* A regime begins: the rate may differ from the one before by as much as that, and by
+ * this rate of the damage. */
+static void renew(struct bank *b, double damage, double rate)
+{
+	int n = 2 + b->par.n_loads;
+
+	for (int i = 0; i < b->trends; i++) {
+		struct trend *tr = &b->trend[i];
+		double line[LINE], square = squared_slope(place_of(b, tr->shape, damage));
+
 		scale_trend(b, tr, grown(tr, b->age));
 		begin_regime(b, tr, 0);
 		line_at(b, tr, b->at, line);
-		x[n + n + 1] += (line[LINE_V] * line[LINE_V] + rate * rate * square) *
-				freedom_of(b, tr) / tr->sum;
+		state_of(b, tr)[n + n + 1] +=
+			(line[LINE_V] * line[LINE_V] + rate * rate * square) *
+			freedom_of(b, tr) / tr->sum;
 	}
 }
 
@@ -545,7 +555,9 @@ static void shift(struct bank *b, const struct row *r, int repaired)
 {
 	double damage = damage_of(b, r->y), jump = damage - b->level;
 
-	unsettle(b, damage, jump, repaired ? NAN : jump * b->unit / (r->t - b->last));
+	unsettle(b, damage, jump);
+	if (!repaired)
+		renew(b, damage, jump * b->unit / (r->t - b->last));
 	b->repairs += repaired;
 	b->jumped = 1;
 	b->counts.shifts++;
@@ -753,9 +765,13 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
-	unsettle(b, b->level, event == BANK_REPAIR, event == BANK_REPAIR ? NAN : 0);
-	b->repairs += event == BANK_REPAIR;
-	b->jumped |= event == BANK_REPAIR;
+	if (event == BANK_REPAIR) {
+		unsettle(b, b->level, 1);
+		b->repairs++;
+		b->jumped = 1;
+	} else {
+		renew(b, b->level, 0);
+	}
 	return 1;
 }
 
