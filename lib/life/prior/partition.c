@@ -268,13 +268,16 @@ static enum partition_status share_area(struct partition *p, double transition)
 	}
 	if (sum > p->area * (1 + 1e-9))
 		return PARTITION_AREA;
-	if (p->nclasses > 1)
-		p->zone = given ? fmax(p->area - sum, 0) : transition * p->area;
-	else if (!given)
-		p->class[0].area = p->area;
-	if (p->nclasses > 1 && !given)
+	if (p->nclasses == 1) {
+		if (!given)
+			p->class[0].area = p->area;
+	} else if (given) {
+		p->zone = fmax(p->area - sum, 0);
+	} else {
+		p->zone = transition * p->area;
 		p->class[p->order[0]].area = p->class[p->order[p->nclasses - 1]].area =
 			(p->area - p->zone) / 2;
+	}
 	return PARTITION_OK;
 }
 
