@@ -47,17 +47,3 @@ LANES_CLONES size_t lanes_skip(const double *x, size_t i, size_t n)
 		i++;
 	return i;
 }
-
-LANES_CLONES void lanes_add_row(double *to, const double *from, size_t n)
-{
-	for (; n >= FEW; n -= FEW, to += FEW, from += FEW) {
-		lanes4 a, b;
-
-		memcpy(&a, to, sizeof a);
-		memcpy(&b, from, sizeof b);
-		a += b;
-		memcpy(to, &a, sizeof a);
-	}
-	while (n-- > 0)
-		*to++ += *from++;
-}

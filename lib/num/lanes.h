@@ -145,9 +145,6 @@ static inline size_t lanes_next(const double *x, size_t i, size_t n)
 	return i < n && x[i] == 0 ? lanes_skip(x, i, n) : i;
 }
 
-/* to += from, n elements */
-void lanes_add_row(double *to, const double *from, size_t n);
-
 /* sum += x, lane by lane */
 static inline void lanes_add(lanes *sum, lanes x, int n)
 {

@@ -1,5 +1,5 @@
 #include "stress/free_sum.h"
-#include "num/lanes.h"
+#include "num/dot.h"
 #include "num/lesser.h"
 #include "num/pages.h"
 #include "num/status.h"
@@ -395,8 +395,8 @@ static void add_span(void *context, const struct stress_span *span,
 	size_t at = (size_t)span->y * (size_t)l->x.points + (size_t)span->begin;
 
 	for (int c = 0; c < l->numbers; c++)
-		lanes_add_row(
-			l->field[c] + at, number[c], (size_t)(span->end - span->begin));
+		add_scaled(l->field[c] + at, 1, number[c],
+			(size_t)(span->end - span->begin));
 }
 
 /* Points every so many cells, or finer points, with their loads; want: the nodes among

@@ -1,4 +1,5 @@
 #include "stress/lattice.h"
+#include "num/dot.h"
 #include "num/lanes.h"
 #include "num/lesser.h"
 #include "num/status.h"
@@ -459,8 +460,8 @@ static void gather_run(const struct lattice_gather *g, const struct stress_span 
 		combine_rows(g->l, g->field[c], y, from, to, row);
 		interpolate(lx, begin, end, row, from, at);
 		if (part && part->number)
-			lanes_add_row(
-				at, part_at(part, c, begin, y), (size_t)(end - begin));
+			add_scaled(
+				at, 1, part_at(part, c, begin, y), (size_t)(end - begin));
 	}
 	g->want->put(g->want->context, span, number);
 }
