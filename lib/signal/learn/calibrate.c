@@ -27,11 +27,16 @@ static struct look look_with(const struct look *look, const struct calibrate_par
 		.effort = look->effort };
 }
 
+/* 1 if the pulses describe the record one by one. */
+static int describes_each(const struct calibration *c)
+{
+	return calibration_describes(c) && !c->dense;
+}
+
 /* Keeps other in place of c if its pulses describe the record, and better. */
 static int keep_better(struct calibration *c, struct calibration *other)
 {
-	int better = other->penalised < c->penalised && calibration_describes(other) &&
-		     !other->dense;
+	int better = other->penalised < c->penalised && describes_each(other);
 
 	calibration_clear(better ? c : other);
 	if (better)
@@ -314,7 +319,7 @@ static enum separate_status try_velocities(
 	wide.seen = 1;
 	wide.lowest = 0.5 * (lo + hi) / low;
 	status = find(&wide, c);
-	if (status == SEPARATE_OK && (!calibration_describes(c) || c->dense)) {
+	if (status == SEPARATE_OK && !describes_each(c)) {
 		calibration_clear(c);
 		status = SEPARATE_HARD;
 	}
@@ -348,13 +353,14 @@ static const double BROAD_WORK = 5;
 /* Learns the instrument where the durations of pulses seem to differ as in laminar flow:
  * noise that is not white, filters and echoes make those of plug flow seem so, of which a
  * narrow range needs a hundredth of the work.  The broad one is kept if the pulses then
- * describe the record, and better. */
+ * describe the record, and better.  If they do with neither, what work is left is for
+ * nearly equal velocities. */
 static enum separate_status find_broad(
 	struct look *look, const struct velocities *v, struct calibration *c)
 {
 	const double all = look->par->most;
 	enum separate_status status = find_within(look, 0, NARROW * all, c), broad;
-	const int known = status == SEPARATE_OK && calibration_describes(c) && !c->dense;
+	const int known = status == SEPARATE_OK && describes_each(c);
 	struct calibration other = { 0 };
 
 	if (status == SEPARATE_MEMORY)
