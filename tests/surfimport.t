@@ -303,8 +303,28 @@ for last in 4 8; do
 done
 printf '0.1 1.3\n0.7 1.1\n0.9 1.2\n' >two.txt
 ok "a matrix of two columns has no positions" surfimport --pixel 1um --height-unit 1um two.txt
-awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) print i, j, i * j }' >points.txt
-fails "points for a matrix" 1 'three columns look like points x, y, z' surfimport --pixel 1um --height-unit 1um points.txt
+awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 5; j++) print 0.3 * i, 7 + 0.1 * j, 10 * i + j }' >points.txt
+sort -k 3 -r points.txt >mixed.txt
+for list in points mixed; do
+	{ printf 'X [um]\ty [um]\tz [m]\n' && tr ' ' '\t' <$list.txt; } >named.txt
+	surfimport named.txt >b.nrrd
+	is "points x, y, z fill a grid in any order: $list" "$? $(list nx b.nrrd) $(list ny b.nrrd) $(heights b.nrrd)" \
+		"0 4 5 $(sort -k 2,2n -k 1,1n points.txt | cut -d ' ' -f 3 | paste -s -d ' ')"
+	near "their positions tell the spacing along x" "$(list dx b.nrrd)" 3e-7 1e-9
+	near "and along y" "$(list dy b.nrrd)" 1e-7 1e-9
+done
+surfimport --pixel 6umx2um --height-unit 1m mixed.txt >c.nrrd
+is "positions without a unit take --pixel" "$? $(list dx c.nrrd) $(heights c.nrrd)" "0 6e-06 $(heights b.nrrd)"
+fails "a pixel of another shape than that of the points" 1 'apart, which no unit makes --pixel' \
+	surfimport --pixel 1um --height-unit 1um mixed.txt
+sed 1d mixed.txt >part.txt
+fails "a point that is absent" 1 '19 points x, y, z of a grid of 4 x 5: want all of them' \
+	surfimport --pixel 1um --height-unit 1um part.txt
+sed 2p named.txt >twice.txt
+fails "a point that is given twice" 1 'points x, y, z that fill no grid' surfimport twice.txt
+awk 'BEGIN { for (i = 0; i < 20; i++) print i, (i * i) % 19, i }' >points.txt
+fails "points along no grid" 1 'three columns look like points x, y, z that fill no grid' \
+	surfimport --pixel 1um --height-unit 1um points.txt
 awk 'BEGIN { for (i = -1; i < 4; i++) for (j = -1; j < 4; j++)
 	printf "%s%s", i < 0 ? j : j < 0 ? i / 2 : i * j, j < 3 ? " " : "\n" }' >frame.txt
 fails "positions above and beside the heights" 1 'first row and column are equally spaced' \
@@ -328,6 +348,20 @@ fails "positions without a unit" 1 'does not state the spacing: specify --pixel'
 	surfimport --profile --height-unit 1um places.txt
 is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
 fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
+# A comma that separates decimals separates no heights.
+for rows in '1,05,2,5\n3,5,4,25\n' '-0,5,2,5\n3,1,4,2\n'; do
+	printf '%b' "$rows" >commas.txt
+	fails "decimals for heights: $rows" 1 'commas separate decimals, and heights as well' \
+		surfimport --pixel 1um --height-unit 1um commas.txt
+done
+awk 'BEGIN { for (i = 0; i < 10; i++) printf "%d,5,%d,25\n", -i - 1, -2 * i - 1 }' >commas.txt
+fails "decimals for heights: no second cell is negative" 1 'commas separate decimals' \
+	surfimport --pixel 1um --height-unit 1um commas.txt
+for rows in '12,0,3,40\n-5,10,0,7\n' '005,010,100,020\n001,002,003,004\n' '1.5,2,0.5,05\n1,2,3,4\n' \
+	'1,05,3\n2,07,4\n'; do
+	printf '%b' "$rows" >commas.txt
+	ok "heights between commas: $rows" surfimport --pixel 1um --height-unit 1um commas.txt
+done
 # What would be left out as a heading, or is of another type.
 torn() {
 	printf '%b' "$2" >torn.txt
@@ -352,6 +386,9 @@ for rows in '0 0 1\n1 0 4\n0 1 2\n1 1 7\n' '5;0;1\n5;2;4\n0;2;2\n0;0;7\n5;1;3\n0
 	fails "points of a grid are refused: $rows" 1 "look like points x, y, z" \
 		surfimport --pixel 1um --height-unit 1um points.txt
 done
+printf 'x y z\n0 0 1\n1 0 4\n0 1 2\n1 1 7\n' >points.txt
+surfimport --pixel 1um --height-unit 1m points.txt >b.nrrd
+is "with a heading that names them they are points" "$? $(heights b.nrrd)" "0 1 4 2 7"
 printf '0 0 1\n1 0 4\n1 0 2\n0 2 7\n' >heights.txt
 surfimport --pixel 1um --height-unit 1m heights.txt >b.nrrd
 is "heights that repeat are a matrix" "$(heights b.nrrd)" "0 0 1 1 0 4 1 0 2 0 2 7"

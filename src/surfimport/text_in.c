@@ -1,6 +1,7 @@
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include "formats_in.h"
+#include "points.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,6 +35,14 @@ static char *plain(const struct content *c)
 	return text;
 }
 
+/* What cells between commas tell: whether each second one is the decimals of the one
+ * before. */
+struct pairs {
+	int other; /* a cell is no whole number, or a second one has a sign */
+	long minus, minus_zero; /* first cells with a sign, and of these -0 */
+	long padded[2];         /* first and second cells such as 05 */
+};
+
 struct text {
 	const struct content *c;
 	char separator; /* ' ' for blanks */
@@ -44,6 +53,7 @@ struct text {
 	long rows, line;
 	char *header; /* the last line that is not a row of numbers */
 	long header_line;
+	struct pairs pairs;
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -111,6 +121,30 @@ static int cell(const struct text *t, char *s, double *v)
 	return end != s && !*end && !(isinf(*v) && isdigit((unsigned char)end[-1]));
 }
 
+static void look_at(struct pairs *p, const char *s, int second)
+{
+	int minus = *s == '-';
+
+	if (is_gap(s))
+		return;
+	s += minus;
+	p->other |= s[strspn(s, "0123456789")] != '\0' || (minus && second);
+	p->minus += minus;
+	p->minus_zero += minus && strcmp(s, "0") == 0;
+	p->padded[second] += *s == '0' && s[1];
+}
+
+/* Whole numbers are not written 05 or -0, and of twenty negative heights in four columns
+ * none is in the second or fourth by a chance of 1e-6. */
+static int are_decimals(const struct text *t)
+{
+	const struct pairs *p = &t->pairs;
+
+	return t->separator == ',' && t->columns % 2 == 0 && !p->other &&
+	       ((p->padded[1] && !p->padded[0]) || p->minus_zero ||
+		       (t->columns >= 4 && p->minus >= 20));
+}
+
 static void keep(struct text *t, double v)
 {
 	if (t->n == t->room) {
@@ -147,6 +181,7 @@ static int read_row(struct text *t, char *line)
 			t->n = before;
 			return -1;
 		}
+		look_at(&t->pairs, s, n % 2);
 		keep(t, v);
 		n++;
 		s = next;
@@ -329,39 +364,6 @@ static int is_ramp(const double *x, long n, long stride)
 	return n > 2 && step != 0;
 }
 
-/* How many different numbers a column has. */
-static long count_different(const struct text *t, int column)
-{
-	long n = 0;
-
-	for (long i = 0; i < t->rows; i++) {
-		long k = 0;
-
-		while (t->value[k * t->columns + column] !=
-				t->value[i * t->columns + column] &&
-			k < i)
-			k++;
-		n += k == i;
-	}
-	return n;
-}
-
-/* 1 if the first two of three columns are the points of a grid, each with every other:
- * heights rarely repeat, and never so. */
-static int is_grid(const struct text *t)
-{
-	long nx = count_different(t, 0), ny = count_different(t, 1);
-
-	for (long i = 0; i < t->rows; i++)
-		for (long k = 0; k < i; k++) {
-			const double *a = t->value + 3 * i, *b = t->value + 3 * k;
-
-			if (a[0] == b[0] && a[1] == b[1])
-				return 0;
-		}
-	return nx > 1 && ny > 1 && nx * ny == t->rows;
-}
-
 /* 1 if two columns may be a profile: the first is sorted, or equally spaced and the
  * second is not, which few heights are seldom by chance. */
 static int is_profile(const struct text *t)
@@ -384,12 +386,72 @@ static void refuse_points(const struct text *t)
 		warn("%s: two rows of two columns are read as heights: --profile reads "
 		     "positions and heights",
 			t->c->name);
-	if (t->columns == 3 &&
-		(t->rows < SORTED_ROWS ? is_grid(t) : is_sorted(t, 0) || is_sorted(t, 1)))
+	if (t->columns == 3 && t->rows >= SORTED_ROWS &&
+		(is_sorted(t, 0) || is_sorted(t, 1)))
 		die(EXIT_RUN,
-			"%s: three columns look like points x, y, z: want a matrix of heights, "
-			"or --profile for the last two",
+			"%s: three columns look like points x, y, z that fill no grid: want a "
+			"matrix of heights, or --profile for the last two",
 			t->c->name);
+}
+
+/* 1 if the heading names the columns x, y and z. */
+static int is_named_points(const struct text *t)
+{
+	const char by[2] = { t->separator, '\0' };
+	const char *s = t->header ? t->header : "";
+
+	for (const char *name = "xyz"; *name; name++, s += *s != '\0') {
+		s += strspn(s, " \"");
+		if (tolower((unsigned char)*s) != *name || isalnum((unsigned char)s[1]))
+			return 0;
+		s += strcspn(s, by);
+	}
+	return 1;
+}
+
+/* Points x, y, z of a grid, in any order; 0 if the rows are none. */
+static int points_read(const struct text *t, const struct told *told, struct record *r)
+{
+	int named = is_named_points(t);
+	struct grid g;
+	enum points found;
+	double dx, dy, unit, *z;
+	size_t n = (size_t)t->rows;
+
+	if (t->columns != 3)
+		return 0;
+	found = points_find(t->value, n, &g);
+	if (found == POINTS_NONE && !named)
+		return 0;
+	if (found == POINTS_NONE)
+		die(EXIT_RUN,
+			"%s: points x, y, z that fill no grid: want each point of a grid once",
+			t->c->name);
+	if (found == POINTS_PART)
+		die(EXIT_RUN,
+			"%s: %zu points x, y, z of a grid of %zu x %zu: want all of them",
+			t->c->name, n, g.nx, g.ny);
+	if (found == POINTS_FEW && !named)
+		die(EXIT_RUN,
+			"%s: three columns look like points x, y, z: want a heading of these "
+			"names, or a matrix of heights",
+			t->c->name);
+	dx = g.dx * unit_of(t, 2);
+	dy = g.dy * unit_of(t, 1);
+	if (isnan(dx) && fabs(told->dx * g.dy - told->dy * g.dx) > 1e-3 * told->dy * g.dx)
+		die(EXIT_RUN,
+			"%s: points are %g and %g apart, which no unit makes --pixel %g x %g m",
+			t->c->name, g.dx, g.dy, told->dx, told->dy);
+	settle_pixel(t->c, told, &dx, &dy);
+	unit = settle_unit(t->c, told, unit_of(t, 0));
+	z = new_heights(t->c, (double)g.nx, (double)g.ny, dx, dy, r);
+	for (size_t i = 0; i < n; i++) {
+		double height = t->value[3 * i + 2];
+
+		z[g.at[i]] = height == told->missing ? NAN : height * unit;
+	}
+	free(g.at);
+	return 1;
 }
 
 /* 1 if the first of the lines of n samples is equally spaced and the second one is not.
@@ -429,9 +491,14 @@ void text_read(const struct content *c, const struct told *told, struct record *
 	read_rows(&t, text);
 	if (!t.rows)
 		die(EXIT_RUN, "%s: no row of numbers", c->name);
+	if (are_decimals(&t))
+		die(EXIT_RUN,
+			"%s: commas separate decimals, and heights as well: want semicolons, "
+			"TABs or blanks between heights with decimal commas",
+			c->name);
 	if (told->profile) {
 		profile_read(&t, told, r);
-	} else {
+	} else if (!points_read(&t, told, r)) {
 		refuse_points(&t);
 		refuse_positions(&t);
 		settle_pixel(c, told, &dx, &dy);

@@ -1,0 +1,24 @@
+/* points.h - rows of x, y and z as points of a grid, in any order */
+#ifndef POINTS_H
+#define POINTS_H
+
+#include <stddef.h>
+
+enum points {
+	POINTS_NONE, /* heights rather than positions, or scattered points */
+	POINTS_PART, /* half or more of a grid, but not all */
+	POINTS_FEW,  /* each of a grid, as so few heights may be by chance */
+	POINTS_FULL  /* each of a grid, once */
+};
+
+struct grid {
+	size_t nx, ny;
+	double dx, dy; /* in units of the positions */
+	size_t *at;    /* iy * nx + ix of each row; to be freed */
+};
+
+/* Of n rows of three numbers, of which the first two may be equally spaced positions: to
+ * a fiftieth of a step, as they may be rounded. */
+enum points points_find(const double *row, size_t n, struct grid *grid);
+
+#endif
