@@ -42,6 +42,21 @@ is "without --duration the record ends with its last particle, and a warning is 
 debriscount --period 250s --stats st six.tsv >periods.tsv 2>err
 is "each complete period has its rows" \
 	"$(column rows periods.tsv | tr '\n' ' ')$(cell periods_left_out st)" "2 1 1"
+# Three of four at random in the last 400 of 2000 s: 0.2^3; in those of some 1e9 s: 1e-20.
+for begin in 1600 1764489600; do
+	awk -v t="$begin" 'BEGIN { print "diameter\ttime1"; for (i = 0; i < 4; i++) print "1e-4\t" t + 100 * i }' >late.tsv
+	debriscount late.tsv >late.out 2>err
+	status=$?
+	if [ "$begin" = 1600 ]; then
+		is "times that begin late by chance are counted from 0" "$status $(grep -c "# doubtful" late.out)" "0 0"
+	else
+		is "times that do not begin at 0 are marked" "$status $(grep "# doubtful" late.out)" \
+			"3 # doubtful: times do not begin at 0"
+		like "a warning says so" "$(cat err)" 'no particle in the first 1.76449e.09 s of 1.76449e.09 s: times that do not begin at 0'
+	fi
+done
+debriscount --duration 1764490000s late.tsv >late.out 2>err
+is "with --duration they are those of the record" "$? $(cat err)" "0 "
 debriscount --period 250s --duration 900s six.tsv >periods.tsv 2>err
 is "with --duration the last period is written too" "$(column rows periods.tsv | tr '\n' ' ')$(cell end periods.tsv 4)" "2 1 3 0 900"
 

@@ -182,6 +182,10 @@ static struct stretch stretch_of(
 /* Probability of detection below which a particle counts as more than a hundred. */
 static const double HARDLY = 0.01;
 
+/* A record without a stated duration whose particles begin so late by so small a chance
+ * has begun later than 0. */
+static const double UNLIKELY = 1e-6;
+
 /* Reads all rows; returns the end of the record. */
 static double count_rows(
 	struct table_in *t, const struct detection *detection, struct groups *groups)
@@ -194,8 +198,8 @@ static double count_rows(
 	/* The standard error of its middle gives the length of an unresolved section. */
 	int ce = table_find_quantity(t, "time1_se", UNIT_TIME),
 	    cb = by ? table_need(t, by) : -1;
-	double last = 0, late = 0, across = 0, begin = 0, end = groups_next(groups),
-	       hardly = 0, diameter;
+	double first = INFINITY, last = 0, late = 0, number = 0, across = 0, begin = 0,
+	       end = groups_next(groups), hardly = 0, diameter;
 	long part = table_part(t), records = 1;
 
 	if (ct < 0 && !isnan(period))
@@ -233,7 +237,9 @@ static double count_rows(
 			end = groups_next(groups);
 		}
 		late += time < begin;
+		first = fmin(first, time);
 		last = fmax(last, time);
+		number++;
 		name = cb >= 0 ? table_text(t, cb) : "";
 		if (v == VERDICT_UNRESOLVED) {
 			double half = ce >= 0 ? sqrt(3) * table_number(t, ce) : 0;
@@ -260,6 +266,14 @@ static double count_rows(
 		     "counted in that of their middle: choose a longer --period",
 			across);
 		groups_doubtful(groups, "unresolved sections reach beyond their period");
+	}
+	/* Of particles at random times as many begin so late with this chance. */
+	if (ct >= 0 && isnan(duration) && isnan(period) &&
+		pow(1 - first / last, number - 1) < UNLIKELY) {
+		warn("no particle in the first %g s of %g s: times that do not begin at 0 make "
+		     "rates too low; subtract their beginning, or specify --duration",
+			first, last);
+		groups_doubtful(groups, "times do not begin at 0");
 	}
 	if (records > 1 && !isnan(duration))
 		warn("%ld records are counted as one: --duration %g s is taken for all together",
