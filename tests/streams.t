@@ -129,6 +129,7 @@ refuse 'a type we do not read' 'type short: want double or float' 'type: short'
 refuse 'compressed samples' 'encoding gzip: want raw' 'encoding: gzip'
 refuse 'an unknown byte order' "endian: 'pdp' is not understood" 'endian: pdp'
 refuse 'a detached header' "NRRD field 'data file' is not supported" 'data file: x.raw'
+refuse 'units of axes that have none' "NRRD field 'space units' is not supported" 'space units: "um" "um"'
 refuse 'too few sizes' 'want 2 sizes and spacings, got 1 and 2' 'sizes: 4'
 refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
 { header 'sample units: um'; ramp; } >um.nrrd

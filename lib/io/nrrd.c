@@ -98,8 +98,7 @@ static void read_field(
 	static const char *const ignored[] = { "content", "labels", "min", "max",
 		"old min", "old max", "oldmin", "oldmax", "centers", "centerings",
 		"thicknesses", "axis mins", "axismins", "axis maxs", "axismaxs",
-		"block size", "blocksize", "number", "space units", "measurement frame",
-		NULL };
+		"block size", "blocksize", "number", "measurement frame", NULL };
 	char words[AXES][16];
 	double number[AXES];
 
