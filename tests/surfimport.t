@@ -320,6 +320,11 @@ fails "a pixel of another shape than that of the points" 1 'apart, which no unit
 sed 1d mixed.txt >part.txt
 fails "a point that is absent" 1 '19 points x, y, z of a grid of 4 x 5: want all of them' \
 	surfimport --pixel 1um --height-unit 1um part.txt
+for list in points named; do
+	awk '{ print $0 "\t5" }' $list.txt | tr ' ' '\t' >more.txt
+	fails "points with another column: $list" 1 '4 columns look like points x, y, z and more' \
+		surfimport --pixel 1um --height-unit 1um more.txt
+done
 sed 2p named.txt >twice.txt
 fails "a point that is given twice" 1 'points x, y, z that fill no grid' surfimport twice.txt
 awk 'BEGIN { for (i = 0; i < 20; i++) print i, (i * i) % 19, i }' >points.txt

@@ -14,13 +14,13 @@ struct axis {
 };
 
 /* The positions of a column; 0 if they are not equally spaced. */
-static int axis_of(const double *row, size_t n, struct axis *a)
+static int axis_of(const double *row, size_t n, size_t columns, struct axis *a)
 {
 	double *x = xcalloc(n, sizeof *x), widest = 0;
 	int even = 1;
 
 	for (size_t i = 0; i < n; i++) {
-		x[i] = row[3 * i];
+		x[i] = row[columns * i];
 		even &= isfinite(x[i]) != 0;
 	}
 	if (even)
@@ -56,14 +56,14 @@ static double chance(size_t n, double pairs)
 	return p;
 }
 
-enum points points_find(const double *row, size_t n, struct grid *grid)
+enum points points_find(const double *row, size_t n, size_t columns, struct grid *grid)
 {
 	struct axis x, y;
 	double all, luck;
 	char *seen;
 	long repeated = 0;
 
-	if (!axis_of(row, n, &x) || !axis_of(row + 1, n, &y))
+	if (!axis_of(row, n, columns, &x) || !axis_of(row + 1, n, columns, &y))
 		return POINTS_NONE;
 	all = (double)x.count * (double)y.count;
 	if (all > 2 * (double)n)
@@ -72,7 +72,8 @@ enum points points_find(const double *row, size_t n, struct grid *grid)
 	*grid = (struct grid){ x.count, y.count, x.step, y.step,
 		xcalloc(n, sizeof *grid->at) };
 	for (size_t i = 0; i < n; i++) {
-		size_t at = place(&y, row[3 * i + 1]) * x.count + place(&x, row[3 * i]);
+		const double *at_row = row + columns * i;
+		size_t at = place(&y, at_row[1]) * x.count + place(&x, at_row[0]);
 
 		repeated += seen[at];
 		seen[at] = 1;

@@ -17,8 +17,8 @@ struct grid {
 	size_t *at;    /* iy * nx + ix of each row; to be freed */
 };
 
-/* Of n rows of three numbers, of which the first two may be equally spaced positions: to
- * a fiftieth of a step, as they may be rounded. */
-enum points points_find(const double *row, size_t n, struct grid *grid);
+/* Of n rows, whose first two numbers may be equally spaced positions: to a fiftieth of a
+ * step, as they may be rounded. */
+enum points points_find(const double *row, size_t n, size_t columns, struct grid *grid);
 
 #endif

@@ -418,11 +418,16 @@ static int points_read(const struct text *t, const struct told *told, struct rec
 	double dx, dy, unit, *z;
 	size_t n = (size_t)t->rows;
 
-	if (t->columns != 3)
+	if (t->columns < 3)
 		return 0;
-	found = points_find(t->value, n, &g);
-	if (found == POINTS_NONE && !named)
+	found = points_find(t->value, n, (size_t)t->columns, &g);
+	if ((found == POINTS_NONE || (found == POINTS_FEW && t->columns > 3)) && !named)
 		return 0;
+	if (t->columns > 3)
+		die(EXIT_RUN,
+			"%s: %d columns look like points x, y, z and more: want these three, "
+			"or a matrix of heights",
+			t->c->name, t->columns);
 	if (found == POINTS_NONE)
 		die(EXIT_RUN,
 			"%s: points x, y, z that fill no grid: want each point of a grid once",
