@@ -353,16 +353,24 @@ fails "positions without a unit" 1 'does not state the spacing: specify --pixel'
 	surfimport --profile --height-unit 1um places.txt
 is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
 fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
+printf '1 2\n3 4\n\n5 6\n7 9\n' >blocks.txt
+fails "two matrices" 1 'line 3: an empty line between rows: want a single matrix' \
+	surfimport --pixel 1um --height-unit 1um blocks.txt
+printf '\n1 2\n7 4\n# the end\n5 7\n\n\n' >spaced.txt
+ok "empty lines around the rows are none between them" surfimport --pixel 1um --height-unit 1um spaced.txt
+printf '1 2\r\r\n7 4\r\r\n5 7\r\r\n' >spaced.txt
+surfimport --pixel 1um --height-unit 1m spaced.txt >b.nrrd
+is "rows may be two lines apart" "$? $(heights b.nrrd)" "0 1 2 7 4 5 7"
 # A comma that separates decimals separates no heights.
-for rows in '1,05,2,5\n3,5,4,25\n' '-0,5,2,5\n3,1,4,2\n'; do
+for rows in '1,05,2,5\n3,5,4,25\n' '-0,5,2,5\n3,1,4,2\n' '1,000.5,2,250\n3,100.25,4,750\n'; do
 	printf '%b' "$rows" >commas.txt
-	fails "decimals for heights: $rows" 1 'commas separate decimals, and heights as well' \
+	fails "decimals for heights: $rows" 1 'commas separate decimals or thousands, and heights as well' \
 		surfimport --pixel 1um --height-unit 1um commas.txt
 done
 awk 'BEGIN { for (i = 0; i < 10; i++) printf "%d,5,%d,25\n", -i - 1, -2 * i - 1 }' >commas.txt
 fails "decimals for heights: no second cell is negative" 1 'commas separate decimals' \
 	surfimport --pixel 1um --height-unit 1um commas.txt
-for rows in '12,0,3,40\n-5,10,0,7\n' '005,010,100,020\n001,002,003,004\n' '1.5,2,0.5,05\n1,2,3,4\n' \
+for rows in '12,0,3,40\n-5,10,0,7\n' '005,010,100,020\n001,002,003,004\n' '1.5,2,0.5,5\n-1,2,-0,4\n' \
 	'1,05,3\n2,07,4\n'; do
 	printf '%b' "$rows" >commas.txt
 	ok "heights between commas: $rows" surfimport --pixel 1um --height-unit 1um commas.txt

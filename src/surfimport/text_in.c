@@ -51,6 +51,9 @@ struct text {
 	size_t n, room;
 	int columns;
 	long rows, line;
+	long empty;   /* the last empty line since the last row, 0: none */
+	long inner;   /* the first one between rows */
+	long gaps;    /* rows below empty lines */
 	char *header; /* the last line that is not a row of numbers */
 	long header_line;
 	struct pairs pairs;
@@ -131,18 +134,19 @@ static void look_at(struct pairs *p, const char *s, int second)
 	p->other |= s[strspn(s, "0123456789")] != '\0' || (minus && second);
 	p->minus += minus;
 	p->minus_zero += minus && strcmp(s, "0") == 0;
-	p->padded[second] += *s == '0' && s[1];
+	p->padded[second] += *s == '0' && isdigit((unsigned char)s[1]);
 }
 
-/* Whole numbers are not written 05 or -0, and of twenty negative heights in four columns
- * none is in the second or fourth by a chance of 1e-6. */
+/* No height is written 05, or 000.5 behind thousands, and hardly -0; of twenty negative
+ * ones in four columns none is in the second or fourth by a chance of 1e-6. */
 static int are_decimals(const struct text *t)
 {
 	const struct pairs *p = &t->pairs;
 
-	return t->separator == ',' && t->columns % 2 == 0 && !p->other &&
-	       ((p->padded[1] && !p->padded[0]) || p->minus_zero ||
-		       (t->columns >= 4 && p->minus >= 20));
+	return t->separator == ',' && t->columns % 2 == 0 &&
+	       ((p->padded[1] && !p->padded[0]) ||
+		       (!p->other &&
+			       (p->minus_zero || (t->columns >= 4 && p->minus >= 20))));
 }
 
 static void keep(struct text *t, double v)
@@ -235,6 +239,7 @@ static void read_rows(struct text *t, char *text)
 					    (!t->rows || t->separator == ' ' ||
 						    !strchr(line, t->separator)))) {
 			missing += !t->rows && !t->header && strpbrk(line, ";,\t");
+			t->empty = t->rows && *line != '#' ? t->line : t->empty;
 			continue;
 		}
 		if (!t->rows)
@@ -254,6 +259,9 @@ static void read_rows(struct text *t, char *text)
 			die(EXIT_RUN, "%s: line %ld: want %d heights, got %d", t->c->name,
 				t->line, t->columns, n);
 		t->columns = n;
+		t->inner = t->inner ? t->inner : t->empty;
+		t->gaps += t->empty > 0;
+		t->empty = 0;
 		for (; missing > 0; missing--, t->rows++)
 			for (int i = 0; i < n; i++) {
 				keep(t, t->value[t->n - (size_t)n]);
@@ -498,12 +506,17 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		die(EXIT_RUN, "%s: no row of numbers", c->name);
 	if (are_decimals(&t))
 		die(EXIT_RUN,
-			"%s: commas separate decimals, and heights as well: want semicolons, "
-			"TABs or blanks between heights with decimal commas",
+			"%s: commas separate decimals or thousands, and heights as well: want "
+			"semicolons, TABs or blanks between the heights",
 			c->name);
 	if (told->profile) {
 		profile_read(&t, told, r);
 	} else if (!points_read(&t, told, r)) {
+		/* all rows may be two lines apart */
+		if (t.gaps > 0 && t.gaps < t.rows - 1)
+			die(EXIT_RUN,
+				"%s: line %ld: an empty line between rows: want a single matrix",
+				c->name, t.inner);
 		refuse_points(&t);
 		refuse_positions(&t);
 		settle_pixel(c, told, &dx, &dy);
