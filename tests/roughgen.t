@@ -178,6 +178,8 @@ fails "a crop of everything" 1 'removes all of' roughgen --l-filter 0.96mm --end
 fails "measure and spectrum" 2 'exclude one another' roughgen --measure --spectrum iso.nrrd
 fails "a taper without a spectrum" 2 'requires --spectrum' roughgen --taper none iso.nrrd
 fails "a filter without a file" 2 '\--s-filter: applies to a measured' roughgen --s-filter 1um
+fails "an S-filter above the L-filter" 2 'is not below --l-filter' roughgen --s-filter 64um --l-filter 32um iso.nrrd
+fails "an L-filter that leaves nothing" 1 'shorter than a pixel: no height is left' roughgen --l-filter 1nm iso.nrrd
 roughgen --l-filter 2mm iso.nrrd 2>err >long.nrrd
 is "a filter longer than the surface gives a warning" "$(grep -c 'longer than the surface' err)" 1
 

@@ -54,6 +54,9 @@ struct measured *measured_open(const char *path)
 {
 	struct measured *m = xcalloc(1, sizeof *m);
 
+	if (l_filter > 0 && s_filter >= l_filter)
+		die(EXIT_USAGE, "--s-filter %g m is not below --l-filter %g m", s_filter,
+			l_filter);
 	m->in = fields_open(path, raw_given());
 	m->piped = strcmp(path, "-") == 0;
 	return m;
@@ -169,7 +172,10 @@ static void filter_heights(const char *word, double nesting, int high, struct re
 
 	if (!(nesting > 0))
 		return;
-	if (nesting < fmax(s->dx, s->dy))
+	if (high && nesting < fmin(s->dx, s->dy))
+		die(EXIT_RUN, "--%s %g m is shorter than a pixel: no height is left",
+			word, nesting);
+	if (!high && nesting < fmax(s->dx, s->dy))
 		warn("--%s %g m is shorter than a pixel and does nothing", word, nesting);
 	if (nesting > side)
 		warn("--%s %g m is longer than the surface, %g m", word, nesting, side);
