@@ -320,6 +320,9 @@ fails "a pixel of another shape than that of the points" 1 'apart, which no unit
 sed 1d mixed.txt >part.txt
 fails "a point that is absent" 1 '19 points x, y, z of a grid of 4 x 5: want all of them' \
 	surfimport --pixel 1um --height-unit 1um part.txt
+perl -e '$h = "{\x27descr\x27: \x27<f8\x27, \x27fortran_order\x27: False, \x27shape\x27: (20, 3), }";
+	print "\x93NUMPY\1\0" . pack("v", length $h) . $h . pack("d<*", map { split } <>)' mixed.txt >points.npy
+fails "points in an array" 1 'rows look like points x, y, z: want a matrix' surfimport --pixel 1um --height-unit 1um points.npy
 for list in points named; do
 	awk '{ print $0 "\t5" }' $list.txt | tr ' ' '\t' >more.txt
 	fails "points with another column: $list" 1 '4 columns look like points x, y, z and more' \

@@ -1,5 +1,6 @@
 #include "formats_in.h"
 #include "cli/msg.h"
+#include "points.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -190,6 +191,7 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	double dx = NAN, dy = NAN, unit, nx = 0, ny = 0, missing = told->missing;
 	size_t length, at;
 	const char *descr, *shape, *fortran;
+	struct grid grid;
 	char *header, close = 0;
 	int type = 0;
 
@@ -244,6 +246,12 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 		take(c, at + length, 0, (enum sample_type)type, descr[1] == '>', unit,
 			missing, r);
 	}
+	if (r->nx >= 3 &&
+		points_find(r->data[0], (size_t)r->ny, (size_t)r->nx, &grid) > POINTS_FEW)
+		die(EXIT_RUN,
+			"%s: rows look like points x, y, z: want a matrix of heights, or points "
+			"as text",
+			c->name);
 	free(header);
 }
 

@@ -6,8 +6,8 @@
 
 enum points {
 	POINTS_NONE, /* heights rather than positions, or scattered points */
-	POINTS_PART, /* half or more of a grid, but not all */
 	POINTS_FEW,  /* each of a grid, as so few heights may be by chance */
+	POINTS_PART, /* half or more of a grid, but not all */
 	POINTS_FULL  /* each of a grid, once */
 };
 
