@@ -414,6 +414,9 @@ for row in "-F 50N|^-" "-E 210GPa|^-" "-F 500N|a mean pressure of 5e+07 Pa, not 
 	$wear --depth-step 50um ${row%%|*} ball.nrrd 2>&1 >t.tsv | grep -o 'solved with .*' >err
 	like "a contact that is read, and ${row%%|*}: a warning if they differ" "$(cat err)-" "${row#*|}"
 done
+$wear --depth-step 50um --boundary periodic ball.nrrd >t.tsv 2>err
+is "the stress of another boundary than that of the contact is marked" "$? $(grep '^# doubtful' t.tsv)" \
+	"3 # doubtful: realisation 0: stress and contact have different boundaries"
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N --pressure 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa --fields foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd

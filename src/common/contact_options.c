@@ -116,11 +116,12 @@ void press_differs(const char *name, long number, const char *what, const char *
 			name, number, what, solved, unit, asked, unit);
 }
 
-int press_given(const struct record *r, const char *name, long number)
+const char *press_given(const struct record *r, const char *name, long number)
 {
 	const char *converged = record_get(r, "converged"),
 		   *around = record_get(r, "boundary");
 	double hardness = record_get_number(r, "hardness");
+	const char *why = NULL;
 
 	press_differs(name, number, "a contact modulus", "Pa", press.estar,
 		record_get_number(r, "estar"));
@@ -129,17 +130,19 @@ int press_given(const struct record *r, const char *name, long number)
 		press_differs(name, number, "a hardness", "Pa", press.hardness,
 			isnan(hardness) ? 0 : hardness);
 	if (around && opt_given("boundary") &&
-		strcmp(around, boundaries[press.boundary]) != 0)
+		strcmp(around, boundaries[press.boundary]) != 0) {
 		warn("%s: record %ld: its contact was solved with a %s boundary, not a %s one as the options say",
 			name, number, around, boundaries[press.boundary]);
+		why = "stress and contact have different boundaries";
+	}
 	if (record_get(r, "coating"))
 		die(EXIT_RUN,
 			"%s: record %ld is the contact of a coated body: want bodies of one material",
 			name, number);
 	if (!converged || strcmp(converged, "no") != 0)
-		return 1;
+		return why;
 	warn("%s: record %ld: its contact did not converge", name, number);
-	return 0;
+	return "a contact did not converge";
 }
 
 void press_record(struct record *r, const struct contact_par *par)

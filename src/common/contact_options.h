@@ -29,9 +29,9 @@ struct contact_par press_par(const struct record *r, struct pool *pool);
 void press_differs(const char *name, long number, const char *what, const char *unit,
 	double asked, double solved);
 /* A contact solved before, of which the stress is wanted: dies if a body is coated; warns
- * if it is of another modulus, hardness or boundary; warns and returns 0 if it did not
- * converge. */
-int press_given(const struct record *r, const char *name, long number);
+ * if it is of another modulus or hardness; warns and returns why the stress is doubtful
+ * if it is of another boundary or did not converge; NULL: it is not. */
+const char *press_given(const struct record *r, const char *name, long number);
 /* Writes the keys of material and boundary. */
 void press_record(struct record *r, const struct contact_par *par);
 /* Drops what an earlier contact found: it is not of other heights or another load. */

@@ -159,7 +159,7 @@ int main(int argc, char **argv)
 		if (around && !strcmp(around, "periodic"))
 			die(EXIT_RUN, "%s: record %ld is periodic: want free surfaces",
 				fields_name(in), fields_count(in));
-		if (!press_given(&r, fields_name(in), fields_count(in)))
+		if (press_given(&r, fields_name(in), fields_count(in)))
 			done = EXIT_NOCONV;
 		if (!cmd)
 			cmd = opt_cmd(r.cmd, NULL);

@@ -106,13 +106,15 @@ static void compare_target(const struct run *run, const struct scene *c)
 static void open_scene(struct run *run, struct record *r, struct scene *c)
 {
 	double before = record_get_number(r, "step"), crown, sq;
+	const char *why = NULL;
 
 	if (r->nz != 1)
 		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
 			fields_name(run->in), fields_count(run->in), r->nz);
-	if (!wearing_solves(run->wearing, 1) &&
-		!press_given(r, fields_name(run->in), fields_count(run->in)))
-		doubt(run, not_converged);
+	if (!wearing_solves(run->wearing, 1))
+		why = press_given(r, fields_name(run->in), fields_count(run->in));
+	if (why)
+		doubt(run, why);
 	crown = record_get_number(r, "crown");
 	sq = record_get_number(r, "sq");
 	if (record_find(r, "pressure") < 0 && wearing_solves(run->wearing, 1))
