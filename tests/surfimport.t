@@ -330,6 +330,10 @@ for list in points named; do
 done
 sed 2p named.txt >twice.txt
 fails "a point that is given twice" 1 'points x, y, z that fill no grid' surfimport twice.txt
+awk 'BEGIN { for (i = 0; i < 20; i++) print (i * 7) % 19.3, (i * 11) % 17.9, i }' >scattered.txt
+surfimport --pixel 1um --height-unit 1um scattered.txt 2>err >b.nrrd
+is "scattered points without a heading cannot be told from heights" "$? $(list nx b.nrrd)" "0 3"
+like "a warning states what they are read as" "$(cat err)" 'three columns are read as heights'
 awk 'BEGIN { for (i = 0; i < 20; i++) print i, (i * i) % 19, i }' >points.txt
 fails "points along no grid" 1 'three columns look like points x, y, z that fill no grid' \
 	surfimport --pixel 1um --height-unit 1um points.txt

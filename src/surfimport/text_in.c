@@ -400,6 +400,10 @@ static void refuse_points(const struct text *t)
 			"%s: three columns look like points x, y, z that fill no grid: want a "
 			"matrix of heights, or --profile for the last two",
 			t->c->name);
+	if (t->columns == 3 && t->rows >= SORTED_ROWS)
+		warn("%s: three columns are read as heights: points x, y, z would be those of a "
+		     "grid",
+			t->c->name);
 }
 
 /* 1 if the heading names the columns x, y and z. */
