@@ -6,11 +6,22 @@
 #include <math.h>
 #include <string.h>
 
+/* The least one >= n: lags are searched in parts of many lengths, and the plan of a
+ * transform of another length takes longer than the transform. */
+static size_t power_of_two(size_t n)
+{
+	size_t power = 1;
+
+	while (power < n)
+		power *= 2;
+	return power;
+}
+
 /* Correlation sum_n x(n) y(n + lag) at lags 0 .. max_lag. */
 static enum num_status correlate(
 	const double *x, const double *y, size_t n, size_t max_lag, double *r)
 {
-	size_t size = fft_good_size(n + max_lag + 1);
+	const size_t size = power_of_two(n + max_lag + 1);
 	struct fft *fft = fft_new(size, 1);
 	double *pad = fft_alloc(size);
 	double complex *fx = fft_alloc_complex(size / 2 + 1);

@@ -1,6 +1,7 @@
 /* calibrate.c - see calibration.h */
 #include "num/dot.h"
 #include "signal/learn/calibration.h"
+#include "signal/learn/crosstalk.h"
 #include "signal/learn/find_lines.h"
 #include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
@@ -399,47 +400,69 @@ static enum separate_status try_wide(struct look *look, struct calibration *c)
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
-/* Learns again without the crosstalk found, until there is no more. */
-static enum separate_status without_crosstalk(struct look *look, struct calibration *c)
+/* Makes *clean a look at the channels without this crosstalk, whose copies are in *x, to
+ * be freed. */
+static enum separate_status unmix(const struct look *look, const double crosstalk[2],
+	double **x, struct look *clean)
+{
+	const size_t n = look->n;
+
+	*clean = look_with(look, look->par);
+	if (!*x)
+		*x = malloc(2 * n * sizeof **x);
+	if (!*x)
+		return SEPARATE_MEMORY;
+	for (int k = 0; k < 2; k++) {
+		memcpy(*x + (size_t)k * n, look->x[k], n * sizeof **x);
+		clean->x[k] = *x + (size_t)k * n;
+	}
+	calibration_unmix(crosstalk, *x, *x + n, n);
+	return SEPARATE_OK;
+}
+
+static int is_mixed(const double crosstalk[2])
+{
+	return crosstalk[0] != 0 || crosstalk[1] != 0;
+}
+
+/* Learns again without the crosstalk found beside what is removed, until there is no
+ * more. */
+static enum separate_status without_crosstalk(
+	const struct look *look, double removed[2], double **x, struct calibration *c)
 {
 	enum { ROUNDS = 4 };
-	const size_t n = look->n;
-	double *x = malloc(2 * n * sizeof *x), removed[2] = { 0 };
-	enum separate_status status = x ? SEPARATE_OK : SEPARATE_MEMORY;
+	enum separate_status status = SEPARATE_OK;
 
-	for (int k = 0; k < ROUNDS && status == SEPARATE_OK &&
-			(c->crosstalk[0] != 0 || c->crosstalk[1] != 0);
-		k++) {
-		struct look clean = look_with(look, look->par);
+	for (int k = 0; k < ROUNDS && is_mixed(c->crosstalk); k++) {
+		struct look clean;
 		struct calibration other = { 0 };
 		double more[2] = { removed[0] + c->crosstalk[0],
 			removed[1] + c->crosstalk[1] };
 
-		memcpy(x, look->x[0], n * sizeof *x);
-		memcpy(x + n, look->x[1], n * sizeof *x);
-		calibration_unmix(more, x, x + n, n);
-		clean.x[0] = x;
-		clean.x[1] = x + n;
-		status = find(&clean, &other);
+		status = unmix(look, more, x, &clean);
+		if (status == SEPARATE_OK)
+			status = find(&clean, &other);
 		if (status != SEPARATE_OK) {
 			calibration_clear(&other);
 			break;
 		}
-		memcpy(removed, more, sizeof removed);
+		memcpy(removed, more, 2 * sizeof *removed);
 		calibration_clear(c);
 		*c = other;
 	}
-	memcpy(c->crosstalk, removed, sizeof removed);
-	free(x);
+	memcpy(c->crosstalk, removed, 2 * sizeof *removed);
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
-/* The range of velocities, from the channels without their lines, which look like pulses.
- */
-static enum separate_status find_velocities(const struct look *look, struct velocities *v)
+/* The range of velocities and the crosstalk, from the channels without their lines, which
+ * look like pulses. */
+static enum separate_status survey(
+	const struct look *look, struct velocities *v, double crosstalk[2])
 {
 	const size_t n = look->n;
-	double *y = malloc((3 * n + 1) * sizeof *y);
+	double *y = malloc((4 * n + 1) * sizeof *y);
+	const double *const x[] = { y, y + n };
+	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
 	struct calibration c = { .tones = 0 };
 	struct lines lines;
 	enum separate_status status = SEPARATE_MEMORY;
@@ -449,8 +472,14 @@ static enum separate_status find_velocities(const struct look *look, struct velo
 		memcpy(y + n, look->x[1], n * sizeof *y);
 		status = find_lines(look->par, y, y + n, n, y + 2 * n, &c, &lines);
 	}
-	if (status == SEPARATE_OK && velocities_find(y, y + n, n, v) != NUM_OK)
+	if (status == SEPARATE_OK &&
+		(marks_find(y, n, y + 2 * n, &m[0]) != NUM_OK ||
+			marks_find(y + n, n, y + 2 * n, &m[1]) != NUM_OK ||
+			velocities_find(m, n, v) != NUM_OK ||
+			crosstalk_find(x, look->par->hidden, n, m, crosstalk) != NUM_OK))
 		status = SEPARATE_MEMORY;
+	marks_clear(&m[0]);
+	marks_clear(&m[1]);
 	free(y);
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
@@ -461,31 +490,44 @@ static enum separate_status find_velocities(const struct look *look, struct velo
  * least 1.54 in all 41 of laminar flow. */
 static const double LAMINAR = 1.5;
 
+/* Learns the instrument, if its pulses have velocities as those of the survey. */
+static enum separate_status find_flow(
+	struct look *look, const struct velocities *v, struct calibration *c)
+{
+	const int broad = v->slow > LAMINAR * v->fast;
+	enum separate_status status = broad ? find_broad(look, v, c) : find(look, c);
+
+	if (status == SEPARATE_NO_LAG && v->ratio > 0 && !broad)
+		status = try_velocities(look, v, HALF * look->par->most, c);
+	if (status == SEPARATE_OK && c->far >= SOME && isnan(look->par->spread) &&
+		c->delta_max <= calibration_plug(c))
+		status = try_wide(look, c);
+	return status;
+}
+
 /* Learns from channels of equal polarity; OPPOSITE if they seem to differ. */
 static enum separate_status calibrate_as(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
 	struct effort effort = { 0 };
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n, .effort = &effort };
+	struct look clean = look;
 	struct velocities v = { 0 };
-	int broad;
-	enum separate_status status;
+	double crosstalk[2] = { 0 }, *x = NULL;
+	enum separate_status status = SEPARATE_OK;
 
 	memset(c, 0, sizeof *c);
 	/* A filter that is to be undone has given the pulses lobes, which look like
 	 * slower pulses. */
-	if (!par->filter && isnan(par->lag) && isnan(par->spread) &&
-		isnan(par->duration) && find_velocities(&look, &v) != SEPARATE_OK)
-		return SEPARATE_MEMORY;
-	broad = v.slow > LAMINAR * v.fast;
-	status = broad ? find_broad(&look, &v, c) : find(&look, c);
-	if (status == SEPARATE_NO_LAG && v.ratio > 0 && !broad)
-		status = try_velocities(&look, &v, HALF * par->most, c);
-	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
-		c->delta_max <= calibration_plug(c))
-		status = try_wide(&look, c);
+	if (!par->filter && isnan(par->lag) && isnan(par->spread) && isnan(par->duration))
+		status = survey(&look, &v, crosstalk);
+	if (status == SEPARATE_OK && is_mixed(crosstalk))
+		status = unmix(&look, crosstalk, &x, &clean);
 	if (status == SEPARATE_OK)
-		status = without_crosstalk(&look, c);
+		status = find_flow(&clean, &v, c);
+	if (status == SEPARATE_OK)
+		status = without_crosstalk(&look, crosstalk, &x, c);
+	free(x);
 	c->attempts = effort.attempts;
 	c->work = effort.work;
 	return status;

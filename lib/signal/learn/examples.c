@@ -3,6 +3,7 @@
 #include "num/dot.h"
 #include "num/sigmas.h"
 #include "signal/detect/sections.h"
+#include "signal/learn/crosstalk.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -201,16 +202,10 @@ void examples_keep(struct examples *ex)
 				sizeof ex->example[i].pulse);
 }
 
-/* Fewest examples that tell of crosstalk, and the most of it: more is a shock, which
- * reaches both sensors at once. */
-enum { FEWEST = 6 };
-static const double MOST_CROSSTALK = 0.3;
-
-/* Least squares for each example, whose median events do not move that happen to be in
- * the other channel at its time. */
+/* Least squares for each example. */
 static double crosstalk_of(struct examples *ex, int c, const double *rest, double *model)
 {
-	double share[EXAMPLES_MAX], energy = 0, middle, error;
+	double share[EXAMPLES_MAX], energy = 0;
 	size_t count = 0;
 
 	for (int i = 0; i < ex->count; i++) {
@@ -229,14 +224,7 @@ static double crosstalk_of(struct examples *ex, int c, const double *rest, doubl
 			share[count++] = dot(model, rest + at, e->n) / own;
 		energy += own;
 	}
-	middle = robust_median(share, count);
-	/* The variance of a median is pi / 2 that of a mean. */
-	error = sqrt(M_PI_2 * fmax(pow(robust_spread(share, count), 2) / (double)count,
-				      1 / energy));
-	return count >= FEWEST && fabs(middle) > SIGMAS_NEVER * error &&
-			       fabs(middle) < MOST_CROSSTALK
-		       ? middle
-		       : 0;
+	return crosstalk_median(share, count, energy);
 }
 
 void examples_crosstalk(struct examples *ex, double share[2])
@@ -258,7 +246,7 @@ void examples_crosstalk(struct examples *ex, double share[2])
 			most = fmax(most, fabs(e->pulse[k].a));
 		/* A small pulse may have been fitted to crosstalk. */
 		for (int k = 0; k < e->m; k++)
-			if (fabs(e->pulse[k].a) > MOST_CROSSTALK * most)
+			if (fabs(e->pulse[k].a) > CROSSTALK_MOST * most)
 				joint_add(scene_of(ex, e), &e->pulse[k], -1,
 					work + e->begin, work + n + e->begin, e->n);
 	}

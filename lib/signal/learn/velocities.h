@@ -8,7 +8,7 @@
 #define SIGNAL_VELOCITIES_H
 
 #include "num/status.h"
-#include <stddef.h>
+#include "signal/learn/marks.h"
 
 struct velocities {
 	double ratio; /* of transit time and duration; 0: not found */
@@ -17,8 +17,7 @@ struct velocities {
 	double fastest, slowest, fast, slow;
 };
 
-/* From the clearest pulses of x1, x2[0 .. n).  NUM_MEMORY. */
-enum num_status velocities_find(
-	const double *x1, const double *x2, size_t n, struct velocities *v);
+/* From the clearest pulses of both channels of n samples.  NUM_MEMORY. */
+enum num_status velocities_find(const struct marks m[2], size_t n, struct velocities *v);
 
 #endif

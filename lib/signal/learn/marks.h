@@ -1,0 +1,32 @@
+/* marks.h - where the pulses of a channel are, before anything is known of the instrument
+ *
+ * Maxima of the products with sine pulses, over arrival and duration, none within a
+ * larger one.
+ */
+#ifndef SIGNAL_MARKS_H
+#define SIGNAL_MARKS_H
+
+#include "num/status.h"
+#include <stddef.h>
+
+/* Step of the logarithm of the durations that are compared. */
+#define MARKS_STEP 0.115
+
+struct mark {
+	double t, T;  /* middle and duration, samples */
+	double value; /* product with the pulse of energy 1, in units of the noise */
+};
+
+/* By size, the largest first. */
+struct marks {
+	struct mark *mark;
+	size_t count, room;
+	double noise; /* standard deviation */
+};
+
+/* Pulses of x[0 .. n).  work holds 2 n values.  Free *m with marks_clear(), also on
+ * NUM_MEMORY. */
+enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m);
+void marks_clear(struct marks *m);
+
+#endif
