@@ -461,15 +461,15 @@ static enum separate_status survey(
 {
 	const size_t n = look->n;
 	double *y = malloc((4 * n + 1) * sizeof *y);
-	const double *const x[] = { y, y + n };
+	const double *x[2] = { NULL, NULL };
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
 	struct calibration c = { .tones = 0 };
 	struct lines lines;
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (y) {
-		memcpy(y, look->x[0], n * sizeof *y);
-		memcpy(y + n, look->x[1], n * sizeof *y);
+		x[0] = memcpy(y, look->x[0], n * sizeof *y);
+		x[1] = memcpy(y + n, look->x[1], n * sizeof *y);
 		status = find_lines(look->par, y, y + n, n, y + 2 * n, &c, &lines);
 	}
 	if (status == SEPARATE_OK &&
@@ -514,13 +514,15 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	struct look clean = look;
 	struct velocities v = { 0 };
 	double crosstalk[2] = { 0 }, *x = NULL;
-	enum separate_status status = SEPARATE_OK;
+	enum separate_status status;
 
 	memset(c, 0, sizeof *c);
+	status = survey(&look, &v, crosstalk);
 	/* A filter that is to be undone has given the pulses lobes, which look like
 	 * slower pulses. */
-	if (!par->filter && isnan(par->lag) && isnan(par->spread) && isnan(par->duration))
-		status = survey(&look, &v, crosstalk);
+	if (par->filter || !isnan(par->lag) || !isnan(par->spread) ||
+		!isnan(par->duration))
+		v = (struct velocities){ 0 };
 	if (status == SEPARATE_OK && is_mixed(crosstalk))
 		status = unmix(&look, crosstalk, &x, &clean);
 	if (status == SEPARATE_OK)
