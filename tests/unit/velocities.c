@@ -77,6 +77,10 @@ int main(void)
 		"plug flow has the same ratio (%.3f, %.3f)", v.ratio, plug.ratio);
 	ok(plug.slow < 1.2 * plug.fast, "and velocities that hardly differ (%.2f times)",
 		plug.slow / plug.fast);
+	for (int i = 0; i < N; i++)
+		y2[i] = -y2[i];
+	ok(find(y1, y2, &v) == NUM_OK && v.opposite && v.ratio == 0 && !plug.opposite,
+		"pulses that sensor 2 reverses are told apart");
 	memset(y2, 0, N * sizeof *y2);
 	ok(find(y1, y2, &v) == NUM_OK && v.ratio == 0, "a silent channel has no ratio");
 	make_record(50, 250, 3, y1, y2);

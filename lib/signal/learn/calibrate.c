@@ -505,8 +505,9 @@ static enum separate_status find_flow(
 	return status;
 }
 
-/* Learns from channels of equal polarity; OPPOSITE if they seem to differ. */
-static enum separate_status calibrate_as(const struct calibrate_par *par,
+/* Learns from channels of equal polarity; OPPOSITE if they seem to differ, with equal: if
+ * they have nothing in common otherwise. */
+static enum separate_status calibrate_as(const struct calibrate_par *par, int equal,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
 	struct effort effort = { 0 };
@@ -523,6 +524,8 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 	if (par->filter || !isnan(par->lag) || !isnan(par->spread) ||
 		!isnan(par->duration))
 		v = (struct velocities){ 0 };
+	if (status == SEPARATE_OK && v.opposite && !equal)
+		return SEPARATE_OPPOSITE;
 	if (status == SEPARATE_OK && is_mixed(crosstalk))
 		status = unmix(&look, crosstalk, &x, &clean);
 	if (status == SEPARATE_OK)
@@ -536,26 +539,31 @@ static enum separate_status calibrate_as(const struct calibrate_par *par,
 }
 
 /* Noise that drifts may look as if the sensors differed in polarity: pulses have to
- * describe the record. */
+ * describe the record, or it is learned as if they did not. */
 static enum separate_status calibrate_opposite(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
-	double *y2 = malloc(n * sizeof *y2);
+	struct calibrate_par rest = *par;
+	double *y2 = malloc(n * sizeof *y2), work;
 	enum separate_status status;
 
 	if (!y2)
 		return SEPARATE_MEMORY;
 	memcpy(y2, x2, n * sizeof *y2);
 	negate(y2, n);
-	status = calibrate_as(par, x1, y2, n, c);
+	status = calibrate_as(par, 1, x1, y2, n, c);
 	free(y2);
 	c->gain = -c->gain;
-	if (status == SEPARATE_OK && !calibration_describes(c)) {
+	if (status == SEPARATE_MEMORY ||
+		(status == SEPARATE_OK && calibration_describes(c)))
+		return status;
+	if (status == SEPARATE_OK)
 		calibration_clear(c);
-		status = SEPARATE_NO_LAG;
-	}
-	return status == SEPARATE_OK || status == SEPARATE_MEMORY ? status
-								  : SEPARATE_NO_LAG;
+	work = c->work;
+	rest.most -= work;
+	status = calibrate_as(&rest, 1, x1, x2, n, c);
+	c->work += work;
+	return status == SEPARATE_OPPOSITE ? SEPARATE_NO_LAG : status;
 }
 
 /* Range of the delays, in durations. */
@@ -580,7 +588,7 @@ static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 	known.gain = 1 / par->gain;
 	known.hidden[0] = par->hidden[1];
 	known.hidden[1] = par->hidden[0];
-	status = calibrate_as(&known, x2, x1, n, &exchanged);
+	status = calibrate_as(&known, 1, x2, x1, n, &exchanged);
 	if (status == SEPARATE_MEMORY)
 		return status;
 	describes = status == SEPARATE_OK && calibration_describes(&exchanged);
@@ -603,7 +611,7 @@ static enum separate_status calibrate_swapped(const struct calibrate_par *par,
 enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
-	enum separate_status status = calibrate_as(par, x1, x2, n, c);
+	enum separate_status status = calibrate_as(par, 0, x1, x2, n, c);
 
 	return status == SEPARATE_OPPOSITE  ? calibrate_opposite(par, x1, x2, n, c)
 	       : status == SEPARATE_SWAPPED ? calibrate_swapped(par, x1, x2, n, c)

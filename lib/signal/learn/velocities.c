@@ -30,8 +30,9 @@ static int by_duration(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* The ratio at which there are more pairs than chance makes, most clearly. */
-static void find_peak(
+/* The ratio at which there are more pairs than chance makes, most clearly; returns how
+ * clearly, in standard deviations. */
+static double find_peak(
 	struct pair *pair, size_t pairs, double chance, struct velocities *v)
 {
 	double best = SIGMAS_NEVER;
@@ -52,7 +53,7 @@ static void find_peak(
 		}
 	}
 	if (last == 0)
-		return;
+		return 0;
 	v->ratio = exp(pair[(first + last) / 2].x);
 	pairs = last - first;
 	qsort(pair + first, pairs, sizeof *pair, by_duration);
@@ -60,23 +61,24 @@ static void find_peak(
 	v->slowest = pair[last - 1].T;
 	v->fast = pair[first + pairs / 10].T;
 	v->slow = pair[last - 1 - pairs / 10].T;
+	return best;
 }
 
-enum num_status velocities_find(const struct marks m[2], size_t n, struct velocities *v)
+/* Looks for the ratio by pairs of pulses of this sign; returns as find_peak(). */
+static double pair_up(const struct marks m[2], size_t n, double sign, struct pair *pair,
+	struct velocities *v)
 {
-	struct pair *pair = malloc((m[0].count * m[1].count + 1) * sizeof *pair);
 	double chance = 0;
 	size_t pairs = 0;
 
 	*v = (struct velocities){ 0 };
-	if (!pair)
-		return NUM_MEMORY;
 	for (size_t i = 0; i < m[0].count; i++)
 		for (size_t k = 0; k < m[1].count; k++) {
 			const struct mark *a = &m[0].mark[i], *b = &m[1].mark[k];
 			double T = sqrt(a->T * b->T);
 
-			if (a->value * b->value < 0 || fabs(log(a->T / b->T)) > SAME)
+			if (sign * a->value * b->value < 0 ||
+				fabs(log(a->T / b->T)) > SAME)
 				continue;
 			chance += T / (double)n;
 			if (b->t - a->t > CALIBRATE_APART * T)
@@ -84,7 +86,18 @@ enum num_status velocities_find(const struct marks m[2], size_t n, struct veloci
 					(struct pair){ log((b->t - a->t) / T), T };
 		}
 	qsort(pair, pairs, sizeof *pair, by_ratio);
-	find_peak(pair, pairs, chance, v);
+	return find_peak(pair, pairs, chance, v);
+}
+
+enum num_status velocities_find(const struct marks m[2], size_t n, struct velocities *v)
+{
+	struct pair *pair = malloc((m[0].count * m[1].count + 1) * sizeof *pair);
+	struct velocities other;
+
+	if (!pair)
+		return NUM_MEMORY;
+	if (pair_up(m, n, -1, pair, &other) > pair_up(m, n, 1, pair, v))
+		*v = (struct velocities){ .opposite = 1 };
 	free(pair);
 	return NUM_OK;
 }

@@ -11,6 +11,7 @@
 #include "signal/learn/marks.h"
 
 struct velocities {
+	int opposite; /* 1: sensor 2 seems to reverse the pulses; all else is then 0 */
 	double ratio; /* of transit time and duration; 0: not found */
 	/* Durations of the pulses, as sine pulses, samples: of the fastest and of the
 	 * slowest particle, and those between which four fifths are. */
