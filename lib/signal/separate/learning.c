@@ -400,17 +400,17 @@ static enum separate_status calibrate_now(struct separate *s, size_t n)
  * to its standard errors 8 % for six. */
 enum { ISOLATED = 6 };
 
-/* 1 if pulses of a known shape and nearly one velocity, in white noise, describe what was
- * learned from.  Chi-square compares the noise in the band of the pulses with that of
- * fourth differences: it is too small or too large where noise is not white, for which
- * there are too few samples to test its spectrum. */
+/* 1 if pulses of a known shape and nearly one velocity, in white noise and without
+ * crosstalk, describe what was learned from.  Chi-square compares the noise in the band
+ * of the pulses with that of fourth differences: it is too small or too large where noise
+ * is not white, for which there are too few samples to test its spectrum. */
 static int is_clear(const struct calibration *c)
 {
 	return calibration_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
 	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
 	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) && !c->dense &&
 	       !c->presumed_white && !c->measured && !c->corrected && !c->whitening.tap &&
-	       c->negative == 0;
+	       c->negative == 0 && c->crosstalk[0] == 0 && c->crosstalk[1] == 0;
 }
 
 /* Samples of pulses that may be computed for this per sample.  In 44 records of as many
