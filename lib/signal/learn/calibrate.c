@@ -505,8 +505,8 @@ static enum separate_status find_flow(
 	return status;
 }
 
-/* Learns from channels of equal polarity; OPPOSITE if they seem to differ, with equal: if
- * they have nothing in common otherwise. */
+/* Learns from channels of equal polarity; OPPOSITE if they seem to differ, or, with equal
+ * set, only if they have nothing in common. */
 static enum separate_status calibrate_as(const struct calibrate_par *par, int equal,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
