@@ -40,22 +40,7 @@ static void make_record(
 	shape_free(shape);
 }
 
-/* Adds a pulse of duration T around t. */
-static void add_pulse(double T, double t, double *y)
-{
-	struct shape *shape = shape_new(PULSE_GAUSS);
-	double *p = malloc(N * sizeof *p);
-
-	shape_sample(shape, t, T, 0, N, p, NULL, NULL);
-	for (int i = 0; i < N; i++)
-		y[i] += 40 * p[i];
-	free(p);
-	shape_free(shape);
-}
-
-/* bubbles: flags of 2 N samples, or NULL. */
-static enum num_status find_bubbles(
-	const double *y1, const double *y2, struct velocities *v, unsigned char *bubbles)
+static enum num_status find(const double *y1, const double *y2, struct velocities *v)
 {
 	double *work = malloc(2 * N * sizeof *work);
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
@@ -65,38 +50,16 @@ static enum num_status find_bubbles(
 		status = marks_find(y2, N, work, &m[1]);
 	if (status == NUM_OK)
 		status = velocities_find(m, N, v);
-	if (status == NUM_OK && bubbles)
-		velocities_flag_slower(v, 1.3, m, N, bubbles);
 	marks_clear(&m[0]);
 	marks_clear(&m[1]);
 	free(work);
 	return status;
 }
 
-static enum num_status find(const double *y1, const double *y2, struct velocities *v)
-{
-	return find_bubbles(y1, y2, v, NULL);
-}
-
-static int count_flags(const double *y1, const double *y2)
-{
-	static unsigned char flags[2 * N];
-	struct velocities v;
-	int count = 0;
-
-	memset(flags, 0, sizeof flags);
-	if (find_bubbles(y1, y2, &v, flags) != NUM_OK)
-		return -1;
-	for (int i = 0; i < 2 * N; i++)
-		count += flags[i];
-	return count;
-}
-
 int main(void)
 {
 	double *y1 = calloc(N, sizeof *y1), *y2 = calloc(N, sizeof *y2);
 	struct velocities v, plug;
-	int flags;
 
 	if (!y1 || !y2)
 		return 1;
@@ -114,13 +77,6 @@ int main(void)
 		"plug flow has the same ratio (%.3f, %.3f)", v.ratio, plug.ratio);
 	ok(plug.slow < 1.2 * plug.fast, "and velocities that hardly differ (%.2f times)",
 		plug.slow / plug.fast);
-	ok(count_flags(y1, y2) == 0, "no sample of particles is one of a bubble");
-	add_pulse(300, 20000, y1);
-	add_pulse(300, 20300, y2);
-	flags = count_flags(y1, y2);
-	ok(flags > 0.7 * 2 * 300 && flags < 1.5 * 2 * 300,
-		"samples of a pulse that lasts three times as long are (%d)", flags);
-	make_record(100, 105, 3, y1, y2);
 	for (int i = 0; i < N; i++)
 		y2[i] = -y2[i];
 	ok(find(y1, y2, &v) == NUM_OK && v.opposite && v.ratio == 0 && !plug.opposite,

@@ -455,9 +455,9 @@ static enum separate_status without_crosstalk(
 }
 
 /* The range of velocities and the crosstalk, from the channels without their lines, which
- * look like pulses; sets the flags of the samples of bubbles, n of each channel. */
-static enum separate_status survey(const struct look *look, struct velocities *v,
-	double crosstalk[2], unsigned char *bubbles)
+ * look like pulses. */
+static enum separate_status survey(
+	const struct look *look, struct velocities *v, double crosstalk[2])
 {
 	const size_t n = look->n;
 	double *y = malloc((4 * n + 1) * sizeof *y);
@@ -478,8 +478,6 @@ static enum separate_status survey(const struct look *look, struct velocities *v
 			velocities_find(m, n, v) != NUM_OK ||
 			crosstalk_find(x, look->par->hidden, n, m, crosstalk) != NUM_OK))
 		status = SEPARATE_MEMORY;
-	if (status == SEPARATE_OK)
-		velocities_flag_slower(v, WIDER, m, n, bubbles);
 	marks_clear(&m[0]);
 	marks_clear(&m[1]);
 	free(y);
@@ -512,35 +510,28 @@ static enum separate_status find_flow(
 static enum separate_status calibrate_as(const struct calibrate_par *par, int equal,
 	const double *x1, const double *x2, size_t n, struct calibration *c)
 {
-	/* A filter that is to be undone has given the pulses lobes, which look like
-	 * slower pulses. */
-	const int any = !par->filter && isnan(par->lag) && isnan(par->spread) &&
-			isnan(par->duration);
 	struct effort effort = { 0 };
-	struct calibrate_par seen = *par;
-	struct look look = { .par = &seen, .x = { x1, x2 }, .n = n, .effort = &effort };
+	struct look look = { .par = par, .x = { x1, x2 }, .n = n, .effort = &effort };
 	struct look clean = look;
 	struct velocities v = { 0 };
 	double crosstalk[2] = { 0 }, *x = NULL;
-	unsigned char *bubbles = calloc(2, n);
-	enum separate_status status = SEPARATE_MEMORY;
+	enum separate_status status;
 
 	memset(c, 0, sizeof *c);
-	if (bubbles)
-		status = survey(&look, &v, crosstalk, bubbles);
-	for (int k = 0; any && status == SEPARATE_OK && k < 2; k++)
-		seen.bubbles[k] = bubbles + (size_t)k * n;
-	if (!any)
+	status = survey(&look, &v, crosstalk);
+	/* A filter that is to be undone has given the pulses lobes, which look like
+	 * slower pulses. */
+	if (par->filter || !isnan(par->lag) || !isnan(par->spread) ||
+		!isnan(par->duration))
 		v = (struct velocities){ 0 };
 	if (status == SEPARATE_OK && v.opposite && !equal)
-		status = SEPARATE_OPPOSITE;
+		return SEPARATE_OPPOSITE;
 	if (status == SEPARATE_OK && is_mixed(crosstalk))
 		status = unmix(&look, crosstalk, &x, &clean);
 	if (status == SEPARATE_OK)
 		status = find_flow(&clean, &v, c);
 	if (status == SEPARATE_OK)
 		status = without_crosstalk(&look, crosstalk, &x, c);
-	free(bubbles);
 	free(x);
 	c->attempts = effort.attempts;
 	c->work = effort.work;

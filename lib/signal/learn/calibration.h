@@ -37,9 +37,6 @@ struct calibrate_par {
 	size_t filter_taps;
 	/* Flags of the samples of each channel: 1 is not known; NULL: all are known. */
 	const unsigned char *hidden[2];
-	/* Flags of the samples of bubbles, where no particles are learned from if there
-	 * are enough elsewhere; NULL: none is known. */
-	const unsigned char *bubbles[2];
 	int in_order; /* 1: particles are known to pass sensor 1 first */
 	double most;  /* samples of pulses that may be computed to learn the rest */
 };

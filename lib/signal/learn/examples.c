@@ -9,22 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The flags of n samples from one on, if some of them are set; else NULL. */
-static const unsigned char *flags_of(const unsigned char *flags, long long from, size_t n)
+/* The flags of n samples from one on, if some of them are not known; else NULL. */
+static const unsigned char *hidden_of(
+	const struct examples *ex, int c, long long from, size_t n)
 {
-	return flags && memchr(flags + from, 1, n) ? flags + from : NULL;
-}
-
-/* 1 if the example has samples of bubbles, or such that are not known: these are at the
- * peaks of large pulses. */
-static int is_spoilt(const struct examples *ex, long long from, size_t n)
-{
-	int is = 0;
-
-	for (int c = 0; c < 2; c++)
-		is |= flags_of(ex->hidden[c], from, n) ||
-		      flags_of(ex->bubbles[c], from, n);
-	return is;
+	return ex->hidden[c] && memchr(ex->hidden[c] + from, 1, n) ? ex->hidden[c] + from
+								   : NULL;
 }
 
 /* Stores [from, to) of the record if it is among the most clearest. */
@@ -40,7 +30,10 @@ static void offer_example(
 		energy += ex->y1[i] * ex->y1[i] + ex->y2[i] * ex->y2[i] - 2;
 	/* Large amplitudes and few pulses are preferred. */
 	merit = energy * pow(shortest / length, 4);
-	if (is_spoilt(ex, from, (size_t)(to - from))) /* others come first */
+	/* Samples that are not known are at the peaks of large pulses: others come first.
+	 */
+	if (hidden_of(ex, 0, from, (size_t)(to - from)) ||
+		hidden_of(ex, 1, from, (size_t)(to - from)))
 		merit = -1 / fmax(merit, 0);
 	for (at = ex->count; at > 0 && ex->example[at - 1].merit < merit; at--)
 		if (at < most)
@@ -137,7 +130,7 @@ static const struct joint_scene *scene_of(struct examples *ex, const struct exam
 	for (int c = 0; c < 2; c++) {
 		ex->present.tone_knot[c] = 0.5 * ex->scene.tone_hop -
 					   (double)(e->begin + (c ? ex->shift : 0));
-		ex->present.hidden[c] = flags_of(ex->hidden[c], e->begin, e->n);
+		ex->present.hidden[c] = hidden_of(ex, c, e->begin, e->n);
 	}
 	return &ex->present;
 }

@@ -41,8 +41,7 @@ struct examples {
 	double middle; /* ... the sample where it is that of the scene */
 	struct example example[EXAMPLES_MAX];
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
-	const unsigned char *bubbles[2]; /* the same of bubbles */
-	long shift;                      /* samples by which channel 2 was moved back */
+	long shift;                     /* samples by which channel 2 was moved back */
 	int count;
 	int pieces; /* 1: some may cut pulses through */
 	/* Duration by the spectrum of the record, and how far from it those that fit may

@@ -65,13 +65,13 @@ static int wants_correction(struct examples *ex, struct calibration *c)
 	return correct_doubtful(ex, c) || (c->measured && c->whitening.tap);
 }
 
-void learn_flags(const unsigned char *const flags[2], const struct calibration *c,
-	const unsigned char *aligned[2])
+void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
+	const unsigned char *hidden[2])
 {
-	int use = flags[0] && flags[1] && !c->whitening.tap;
+	int use = par->hidden[0] && par->hidden[1] && !c->whitening.tap;
 
-	aligned[0] = use ? flags[0] : NULL;
-	aligned[1] = use ? flags[1] + c->shift : NULL;
+	hidden[0] = use ? par->hidden[0] : NULL;
+	hidden[1] = use ? par->hidden[1] + c->shift : NULL;
 }
 
 /* Excludes impulses from the examples as well, by flags of 2 n samples, unless the pulses
@@ -145,8 +145,7 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	enum separate_status status =
 		ex.joint && (flags || c->whitening.tap) ? SEPARATE_OK : SEPARATE_MEMORY;
 
-	learn_flags(par->hidden, c, ex.hidden);
-	learn_flags(par->bubbles, c, ex.bubbles);
+	learn_hidden(par, c, ex.hidden);
 	if (flags)
 		hide_spikes(&ex, c->duration, flags);
 	if (source == TAKEN)
@@ -199,7 +198,7 @@ static int is_hidden(
 {
 	const unsigned char *hidden[2];
 
-	learn_flags(par->hidden, c, hidden);
+	learn_hidden(par, c, hidden);
 	return hidden[0] && (memchr(hidden[0], 1, n) || memchr(hidden[1], 1, n));
 }
 

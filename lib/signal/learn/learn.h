@@ -13,11 +13,10 @@
 #include "signal/learn/template.h"
 #include <stddef.h>
 
-/* Flags of the samples of either channel, aligned; NULL if the record was whitened, which
- * spreads what they tell of. */
-void learn_flags(const unsigned char *const flags[2], const struct calibration *c,
-	const unsigned char *aligned[2]);
-
+/* Flags of the samples, aligned, that are not known; NULL if the record was whitened,
+ * which spreads them. */
+void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
+	const unsigned char *hidden[2]);
 /* Fills shape, duration, gain, range of delays, chi2, penalised and events of c
  * from y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these;
  * found: the pulse taken from these, which is tried first, its shape NULL where there is

@@ -455,7 +455,7 @@ static enum separate_status find_template(
 	static const double factor[] = { 1, 0.5, 0.25, 0.125 };
 	const unsigned char *hidden[2];
 
-	learn_flags(par->hidden, c, hidden);
+	learn_hidden(par, c, hidden);
 	template_clear(found);
 	if (par->pulse != CALIBRATE_ANY_PULSE || !isnan(par->duration))
 		return SEPARATE_OK;

@@ -4,7 +4,6 @@
 #include "signal/learn/calibration.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Fewest pairs that tell the ratio. */
 enum { PAIRS = 6 };
@@ -101,18 +100,4 @@ enum num_status velocities_find(const struct marks m[2], size_t n, struct veloci
 		*v = (struct velocities){ .opposite = 1 };
 	free(pair);
 	return NUM_OK;
-}
-
-void velocities_flag_slower(const struct velocities *v, double factor,
-	const struct marks m[2], size_t n, unsigned char *flags)
-{
-	for (int c = 0; c < 2 && v->ratio > 0; c++)
-		for (size_t i = 0; i < m[c].count; i++) {
-			const struct mark *k = &m[c].mark[i];
-			size_t from = (size_t)fmax(k->t - 0.5 * k->T, 0);
-			size_t to = (size_t)fmin(k->t + 0.5 * k->T, (double)n);
-
-			if (k->T > factor * v->slowest)
-				memset(flags + (size_t)c * n + from, 1, to - from);
-		}
 }

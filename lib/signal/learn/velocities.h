@@ -21,9 +21,4 @@ struct velocities {
 /* From the clearest pulses of both channels of n samples.  NUM_MEMORY. */
 enum num_status velocities_find(const struct marks m[2], size_t n, struct velocities *v);
 
-/* Sets the flags, n of each channel, of the samples of pulses that last longer than those
- * of the slowest particle by more than this factor: they are of bubbles. */
-void velocities_flag_slower(const struct velocities *v, double factor,
-	const struct marks m[2], size_t n, unsigned char *flags);
-
 #endif
