@@ -4,49 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The part of p that lies within x[0 .. n) where p begins at this index. */
-struct within {
-	long from, end;
-};
-
-static struct within within(long at, size_t len, size_t n)
-{
-	long from = at < 0 ? -at : 0, end = (long)n - at;
-
-	end = end < (long)len ? end : (long)len;
-	return (struct within){ from, end > from ? end : from };
-}
-
-/* Inner products of p with x from first, first + stride, ... on; zero outside.  Three
- * points at a time share most of p, and the rest is short. */
+/* Inner products of p with x from first, first + stride, ... on; zero outside. */
 static void filter_at(const double *p, size_t len, const double *x, size_t n, long first,
 	size_t stride, double *out, size_t points)
 {
-	const long step = (long)stride;
-	size_t k = 0;
+	for (size_t k = 0; k < points;) {
+		long at = (long)(k * stride) + first;
 
-	for (; k + 3 <= points; k += 3) {
-		const long at = (long)k * step + first;
-		const long from = within(at, len, n).from;
-		const long end = within(at + 2 * step, len, n).end;
-		const double *const y[3] = { x + (at + from), x + (at + step + from),
-			x + (at + 2 * step + from) };
+		if (k + 3 <= points && at >= 0 && (size_t)at + 2 * stride + len <= n) {
+			const double *const y[3] = { x + at, x + at + stride,
+				x + at + 2 * stride };
 
-		if (end <= from)
-			break;
-		dot3(p + from, y, (size_t)(end - from), out + k);
-		for (int i = 0; i < 3; i++) {
-			const long here = at + i * step;
-			const struct within w = within(here, len, n);
-
-			out[k + (size_t)i] += dot(
-				p + w.from, x + (here + w.from), (size_t)(from - w.from));
-			out[k + (size_t)i] +=
-				dot(p + end, x + (here + end), (size_t)(w.end - end));
+			dot3(p, y, len, out + k);
+			k += 3;
+		} else {
+			out[k++] = dot_within(p, len, x, n, at);
 		}
 	}
-	for (; k < points; k++)
-		out[k] = dot_within(p, len, x, n, (long)k * step + first);
 }
 
 /* Matched filter of the residual, for the pulse of this delay, on every stride-th sample,
