@@ -10,7 +10,7 @@ enum { N = 40000, COUNT = 30 };
 
 static const double T = 120, AMPLITUDE = 40;
 
-/* Adds the pulse of amplitude a in the middle of the duration T around t. */
+/* Adds a pulse of amplitude a and duration T around t. */
 static void add_pulse(const struct shape *shape, double t, double a, double *p, double *y)
 {
 	shape_sample(shape, t, T, 0, N, p, NULL, NULL);
