@@ -55,6 +55,9 @@ for begin in 1600 1764489600; do
 		like "a warning says so" "$(cat err)" 'no particle in the first 1.76449e.09 s of 1.76449e.09 s: times that do not begin at 0'
 	fi
 done
+printf 'diameter\ttime1\tverdict\nnan\t5\tshock\nnan\t9\tshock\n' >shocks.tsv
+debriscount shocks.tsv >late.out 2>err
+is "a record without particles has no late ones" "$? $(grep -c '# doubtful' late.out) $(grep -c 'do not begin' err)" "0 0 0"
 debriscount --duration 1764490000s late.tsv >late.out 2>err
 is "with --duration they are those of the record" "$? $(cat err)" "0 "
 debriscount --period 250s --duration 900s six.tsv >periods.tsv 2>err
