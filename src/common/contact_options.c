@@ -116,6 +116,8 @@ void press_differs(const char *name, long number, const char *what, const char *
 			name, number, what, solved, unit, asked, unit);
 }
 
+const char press_not_converged[] = "a contact did not converge";
+
 const char *press_given(const struct record *r, const char *name, long number)
 {
 	const char *converged = record_get(r, "converged"),
@@ -142,7 +144,7 @@ const char *press_given(const struct record *r, const char *name, long number)
 	if (!converged || strcmp(converged, "no") != 0)
 		return why;
 	warn("%s: record %ld: its contact did not converge", name, number);
-	return "a contact did not converge";
+	return press_not_converged;
 }
 
 void press_record(struct record *r, const struct contact_par *par)

@@ -28,6 +28,8 @@ struct contact_par press_par(const struct record *r, struct pool *pool);
 /* Warns where a contact solved before is not what the options ask for; nan: unknown. */
 void press_differs(const char *name, long number, const char *what, const char *unit,
 	double asked, double solved);
+/* Why what follows from a contact that did not converge is doubtful. */
+extern const char press_not_converged[];
 /* A contact solved before, of which the stress is wanted: dies if a body is coated; warns
  * if it is of another modulus or hardness; warns and returns why the stress is doubtful
  * if it is of another boundary or did not converge; NULL: it is not. */

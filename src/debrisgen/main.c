@@ -17,8 +17,6 @@
 /* What the default model takes on 2048 x 2048 cells; more comes in small pages. */
 enum { RESERVE = 256 << 20 };
 
-static const char not_converged[] = "a contact did not converge";
-
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
 
@@ -196,7 +194,7 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 		wearing_step(run->wearing, &c->now, c->target, length, step, &solved);
 
 	if (!solved)
-		doubt(run, not_converged);
+		doubt(run, press_not_converged);
 	check_ends(run, c, &s);
 	check_border(run, c, &s);
 	s.length = length;
@@ -252,7 +250,7 @@ static void wear_record(struct run *run, struct record *r)
 		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
-			doubt(run, not_converged);
+			doubt(run, press_not_converged);
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
 			if (k == 1)
