@@ -62,6 +62,8 @@ series 100 't == 0 ? -1e6 : 1 + t / 1000 + 0.01 * sin(t * t)' >s
 accurate "first value 1e8 sigma below the others, threshold 1.2" "101 left" "$(last rul_q50 -y 1.2 --direction up --lives-only s)" 101 0.2
 series 101 'int(t / 25) / 6' >s
 accurate "readings in steps of a sixth of the way, one in 25 rows" "50 left" "$(last rul_q50 -y 1 --lives-only s)" 50 0.5
+series 120 't * t / 9e4 + 2e-4 * sin(t * t)' >s
+accurate "wear as the square of time, 40 % of the life" "181 left" "$(last rul_q50 -y 1 --lives-only s)" 181 0.15
 series 60 'exp(t)' >s
 accurate "exploding series, e per row" "grey forecast" "$(last grey s)" \
 	"$(awk 'BEGIN { print exp(59) }')" 0.3

@@ -3,7 +3,8 @@
 
 /* The weights and the changes of regime to come (passage.c) were chosen together, see
  * "The first search" in doc/trends.md.  Coordinates with a weight below -2 serve their
- * families alone. */
+ * families alone; the power of 0.5 also quiet wear that goes as the square of time, see
+ * "Squares of time" there. */
 static const struct bank_shape table[] = {
 	{ BANK_LINEAR, 3.5, .par = 0 },
 	{ BANK_RATE, 1.3, .par = 1 },
@@ -12,6 +13,7 @@ static const struct bank_shape table[] = {
 	{ BANK_EXPONENTIAL, 1.1, .scale = 0.05, .par = 1 },
 	{ BANK_EXPONENTIAL, -0.8, .scale = 0.12, .par = 1 },
 	{ BANK_POWER, 0.3, .scale = 0.05, .par = -1 },
+	{ BANK_POWER, -4, .scale = 0.005, .par = 0.5 },
 	{ BANK_POWER, -2.8, .scale = 0.3, .par = 1.5 },
 	{ BANK_POWER, 3.1, .scale = 0.3, .par = 2 },
 	{ BANK_SATURATING, -2, .scale = 0, .par = 0.99, .power = 1 },
