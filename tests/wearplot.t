@@ -109,6 +109,10 @@ done
 wearplot --found poor.tsv --output p.svg signal.au 2>err
 is 'so are doubtful particles in a signal' \
 	"$? $(grep -c 'particles are doubtful' p.svg) $(grep -c 'poor.tsv: doubtful' err)" '3 1 1'
+printf 'time1\ttime2\tamplitude\n0.1\t0.12\t0.1\n0.2\t0.22\tnan\n' >some.tsv
+wearplot --found some.tsv --output p.svg signal.au 2>err
+is 'rows without an amplitude are reported once' "$(cat err)" \
+	"wearplot: some.tsv: 1 of 2 rows have no amplitude and are left out"
 fails 'a missing record' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
 fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.nrrd
 fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd
