@@ -97,6 +97,10 @@ debriscount --by class --classes 60um --duration 10s unclear.tsv >by.tsv 2>err
 is "particles of unclear class count towards the upper limit of each class" \
 	"$(cell rows by.tsv) $(cell doubtful by.tsv) $(cell number by.tsv) $(cell number_low by.tsv) $(cell number_high by.tsv)" \
 	"1 2 1 0.0253178 10.7673"
+sed 's/unclear/NA/; s/nan$//' unclear.tsv | debriscount --by class --classes 60um --duration 10s >missing.tsv
+is "so do those without a class, in any spelling of a missing value" \
+	"$(cell number_high missing.tsv 1) $(column class missing.tsv | sort -u | tr '\n' ' ')" \
+	"$(cell number_high by.tsv 1) ferrous nan "
 is "unclear particles have rows of their own" "$(cell class by.tsv 2) $(cell number by.tsv 2) $(cell number_high by.tsv 2)" \
 	"unclear 3 7.57164"
 

@@ -240,7 +240,7 @@ static double count_rows(
 		first = fmin(first, time);
 		last = fmax(last, time);
 		number++;
-		name = cb >= 0 ? table_text(t, cb) : "";
+		name = cb < 0 ? "" : table_missing(t, cb) ? "nan" : table_text(t, cb);
 		if (v == VERDICT_UNRESOLVED) {
 			double half = ce >= 0 ? sqrt(3) * table_number(t, ce) : 0;
 			const struct stretch stretch = stretch_of(t, &columns);
