@@ -36,7 +36,7 @@ static const struct opt opts[] = {
 		"classes of a standard", standards, 0 },
 	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
 		"one set of rows per period (default the whole record)", NULL, 0 },
-	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e12, "T",
+	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 1e-9, 1e12, "T",
 		"duration of the record (default until its last particle)", NULL, 0 },
 	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
 		"count separately for each value of this column: material, ...", NULL,
@@ -310,6 +310,10 @@ int main(int argc, char **argv)
 	else if (isnan(duration))
 		die(EXIT_RUN,
 			"%s: no particle: specify the length of the record with --duration",
+			table_name(t));
+	if (isnan(duration) && isnan(period) && time_column(t) >= 0 && !(last > 0))
+		die(EXIT_RUN,
+			"%s: no particle after 0 s: specify the length of the record with --duration",
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "
