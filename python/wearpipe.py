@@ -65,8 +65,15 @@ def _made(pointer, status):
     return pointer
 
 
+def _numbers(values):
+    """As doubles; what an array masks is missing, nan."""
+    if np.ma.isMaskedArray(values):
+        values = values.astype(np.float64).filled(np.nan)
+    return np.array(values, dtype=np.float64, order="C")
+
+
 def _field(values):
-    field = np.ascontiguousarray(values, dtype=np.float64)
+    field = _numbers(values)
     if field.ndim != 2:
         raise ValueError("want a field [iy, ix], got %d dimensions" % field.ndim)
     return field
@@ -175,7 +182,7 @@ def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, ce
     """One step of wear.  Returns the worn heights and the particles as a structured array
     with the fields cells, volume, diameter, length, width, solidity, x, y, z (SI).  Warns
     where the border of a free grid cuts off a considerable part of them."""
-    worn, pressure = _field(heights).copy(), _field(pressure)
+    worn, pressure = _field(heights), _field(pressure)
     if worn.shape != pressure.shape:
         raise ValueError("heights and pressure differ in shape")
     dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
@@ -255,7 +262,9 @@ def taps(order, low, high, rate):
 def bandpass(record, low, high, rate, order=200):
     """A record [frame] or [frame, channel], filtered; it lags by order / 2 frames."""
     h = taps(order, low, high, rate)
-    out = np.array(record, dtype=np.float64, order="C")
+    out = _numbers(record)
+    if out.ndim not in (1, 2):
+        raise ValueError("want a record [frame] or [frame, channel]")
     channels = 1 if out.ndim == 1 else out.shape[1]
     status = c_int()
     f = _made(_filter_new(h, h.size, channels, byref(status)), status)
@@ -290,7 +299,7 @@ def separate(record, rate, **known):
     at rate (Hz), as duet finds them: a structured array with the columns of its table.  What
     is known may be given: delay and pulse_duration (s), gain, spacing (m), calibration
     (V s/m4), false_alarm (per sample), learn (s).  Warns where the result is doubtful."""
-    record = np.ascontiguousarray(record, dtype=np.float64)
+    record = _numbers(record)
     if record.ndim != 2 or record.shape[1] != 2:
         raise ValueError("want a record [frame, 2]")
     if set(known) - set(_SEPARATE):
@@ -330,9 +339,11 @@ _life_quantiles = _function("wp_life_quantiles", c_int, c_void_p, _array, _array
 def remaining_life(t, y, threshold, levels=(0.05, 0.5, 0.95), rising=None, draws=500, seed=1):
     """Quantiles of the time left after the last of the observations y at times t until they
     reach the threshold; inf where that much mass never does."""
-    t, y = np.asarray(t, dtype=np.float64), np.asarray(y, dtype=np.float64)
+    t, y = _numbers(t), _numbers(y)
     if t.shape != y.shape or t.ndim != 1:
         raise ValueError("want t and y of one length")
+    if not np.isfinite(y).any():
+        raise ValueError("want observations")
     rising = threshold > y[np.isfinite(y)][0] if rising is None else rising
     status = c_int()
     life = _made(_life_new(threshold, 1 if rising else -1, draws, seed, byref(status)), status)

@@ -26,6 +26,15 @@ roughgen --points 4 --length 1mm --sq 1um --corr 300um --count 2 | sed '0,/^seed
 	sed '/^stream:=/d' >odd 2>/dev/null
 records --output table odd | records --output nrrd >again
 is 'a key of one record does not pass to the next' "$(grep -ac '^odd:=yes' again)" 1
+# What converts samples alone, or shows them, tells that they are doubtful.
+roughgen --points 4 --length 1mm --sq 1um --corr 300um | sed 's/^seed:=1/seed:=1\ndoubtful:=worn/' |
+	sed '/^stream:=/d' >worn 2>/dev/null
+for o in gsf raw; do
+	fails "doubtful samples written as $o" 3 'worn: doubtful by its own account: worn' records --output $o worn
+done
+records worn >list 2>err
+is 'the list of doubtful records says why' "$? $(grep '^# doubtful' list)" '3 # doubtful: worn'
+is 'so do their samples as text' "$(records --output text worn | grep '^# doubtful')" '# doubtful: worn'
 
 # samples FILE: those of a stream, in its order
 samples() {

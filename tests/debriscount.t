@@ -56,7 +56,8 @@ for begin in 1600 1764489600; do
 	fi
 done
 printf 'diameter\ttime1\tverdict\nnan\t5\tshock\nnan\t9\tshock\n' >shocks.tsv
-debriscount shocks.tsv >late.out 2>err
+fails "a record of events alone, whose length is unknown" 1 'no particle after 0 s: specify the length' debriscount shocks.tsv
+debriscount --duration 10s shocks.tsv >late.out 2>err
 is "a record without particles has no late ones" "$? $(grep -c '# doubtful' late.out) $(grep -c 'do not begin' err)" "0 0 0"
 debriscount --duration 1764490000s late.tsv >late.out 2>err
 is "with --duration they are those of the record" "$? $(cat err)" "0 "
@@ -97,6 +98,10 @@ debriscount --by class --classes 60um --duration 10s unclear.tsv >by.tsv 2>err
 is "particles of unclear class count towards the upper limit of each class" \
 	"$(cell rows by.tsv) $(cell doubtful by.tsv) $(cell number by.tsv) $(cell number_low by.tsv) $(cell number_high by.tsv)" \
 	"1 2 1 0.0253178 10.7673"
+sed 's/unclear/NA/; s/nan$//' unclear.tsv | debriscount --by class --classes 60um --duration 10s >missing.tsv
+is "so do those without a class, in any spelling of a missing value" \
+	"$(cell number_high missing.tsv 1) $(column class missing.tsv | sort -u | tr '\n' ' ')" \
+	"$(cell number_high by.tsv 1) ferrous nan "
 is "unclear particles have rows of their own" "$(cell class by.tsv 2) $(cell number by.tsv 2) $(cell number_high by.tsv 2)" \
 	"unclear 3 7.57164"
 
@@ -220,6 +225,9 @@ is "a particle at the end of the record is in its last period" \
 	"$(printf 'time1\tdiameter\n3\t5e-5\n20\t5e-5\n' | debriscount --period 10s --duration 20s | column rows /dev/stdin | tr '\n' ' ')" "1 1 "
 fails "classes that do not ascend" 2 'is not above' debriscount --classes 2um,1um six.tsv
 fails "classes and a standard" 2 'exclude one another' debriscount --classes 2um --standard iso4406 six.tsv
+printf 'time1\tdiameter\n0\t1e-4\n' >begun.tsv
+fails "a record without a length" 1 'no particle after 0 s: specify the length' debriscount begun.tsv
+fails "a record of no length" 2 'duration 0: want 1ns' debriscount --duration 0 begun.tsv
 fails "one of two options for the probability of detection" 2 'both --d50 and --detection-threshold' debriscount --d50 2um six.tsv
 fails "codes of no volume" 2 'requires --flow or --volume' debriscount --output codes six.tsv
 fails "a trend without periods" 2 'requires --period' debriscount --output trend six.tsv

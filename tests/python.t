@@ -82,11 +82,20 @@ low, median, high = wearpipe.remaining_life(t, 0.1 * t + 0.01 * np.sin(17 * t), 
 print("life", low < median < high, abs(median - 41) < 4)
 for wrong in (lambda: wearpipe.press(z, dx, -1, 115e9), lambda: wearpipe.surface(0, 1e-3),
               lambda: wearpipe.remaining_life([0, 1], [0, 1], 5.0),
+              lambda: wearpipe.press(z, dx, 50e6, 115e9, tolerance=2.0),
+              lambda: wearpipe.press(np.ma.masked_greater(z, 1e-6), dx, 50e6, 115e9),
+              lambda: wearpipe.bandpass(np.where(np.arange(3000) == 1000, np.nan, 0), 70, 130, 1e4),
               lambda: wearpipe.stress(p, dx, -1.0),
               lambda: wearpipe.roughness(np.where(z == z.max(), np.nan, z), dx)):
     try:
         wrong(); print("accepted")
     except wearpipe.Error as e:
+        print("refused")
+for wrong in (lambda: wearpipe.remaining_life([], [], 5.0),
+              lambda: wearpipe.bandpass(np.zeros((9, 2, 2)), 70, 130, 1e4)):
+    try:
+        wrong(); print("accepted")
+    except ValueError as e:
         print("refused")
 E2
 if ! "$python" check.py >got 2>err; then
@@ -125,5 +134,5 @@ is 'the particles in a record are those of duet to the last bit' "$(got separati
 is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['channels with nothing in common: no pa']"
 is 'a dead sensor is named' "$(got dead)" 'channel 1 is constant: a dead sensor'
 is 'the remaining life of a straight line is right' "$(got life)" 'True True'
-is 'an impossible input raises an exception' "$(grep -c refused got)" 5
+is 'an impossible input raises an exception' "$(grep -c refused got)" 10
 done_testing

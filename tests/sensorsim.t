@@ -263,6 +263,18 @@ printf 'time\tdiameter\n0.02\t1e-4\n0.01\t1e-4\n' >bad.tsv
 fails "times out of order" 1 'bad.tsv: line 3: time' sensorsim bad.tsv
 printf 'time\tdiameter\n0.02\t-1e-4\n' >bad.tsv
 fails "negative diameter" 1 'bad.tsv: line 2: diameter' sensorsim bad.tsv
+# A table of duet: what is no particle, or may be none, is left out.
+printf 'time1\tdiameter\tverdict\n0.1\t1e-4\talone\n0.2\tnan\tshock\n0.3\tnan\tunresolved\n0.4\t1e-4\tmisfit\n' >found.tsv
+sensorsim --duration 0.6s --truth truth.tsv found.tsv >/dev/null 2>err
+is "events and doubtful rows are no particles" "$(column time1 truth.tsv) $(grep -c 'left out\|not resolved' err)" "0.1 2"
+sensorsim --duration 0.6s --doubtful --truth truth.tsv found.tsv >/dev/null 2>&1
+is "--doubtful takes doubtful rows in" "$(column time1 truth.tsv | tr '\n' ' ')" "0.1 0.4 "
+fails "--doubtful without a table" 2 'not for --uniform' \
+	sensorsim --uniform 50um:60um --number 1 --duration 1s --doubtful
+printf 'time\tdiameter\n-9\t1e-4\n0.3\t1e-4\n700\t1e-4\n701\t1e-4\n' >long.tsv
+sensorsim --duration 1s long.tsv 2>err >/dev/null
+is "particles outside of the record are reported" "$(cat err)" \
+	"sensorsim: long.tsv: 3 particles pass before or after the record"
 printf 'time\tdiameter\n0.02\tnan\n' >bad.tsv
 fails "missing diameter" 1 'bad.tsv: line 2: diameter' sensorsim bad.tsv
 printf 'time\tdiameter\tvelocity\n0.02\t1e-4\t0.01\n' >bad.tsv

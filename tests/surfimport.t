@@ -275,6 +275,12 @@ altered() {
 altered "an SDF file with more heights than points" "more than 2 heights: 'BAD" 's/NumProfiles = 2/NumProfiles = 1/'
 altered "heights with decimal commas" 'more than 4 heights' 's/^1 2/1,5 2,5/'
 altered "a word for a height" "'abc' among the heights" 's/BAD/abc/'
+altered "a hexadecimal height" "'0x10' among the heights" 's/BAD/0x10/'
+altered "a height beyond double precision" "'1e400' among the heights" 's/BAD/1e400/'
+printf %s "$(sed '/^BAD/q' a.sdf)" >cut.sdf
+surfimport cut.sdf >/dev/null 2>err
+is "a last height without newline is reported" "$(cat err)" \
+	"surfimport: cut.sdf: no newline at the end: the last height may be truncated"
 altered "an inverted scale" 'units of -1e-06 m, want a positive' 's/Zscale = /Zscale = -/'
 altered "a scale of nothing" 'units of 0 m, want a positive' 's/Zscale = 1e-6/Zscale = 0/'
 altered "half a point" '2.5 x 2 samples' 's/NumPoints = 2/NumPoints = 2.5/'

@@ -97,6 +97,22 @@ sed '$d' truth.tsv >torn.tsv
 fails 'a table that was cut off' 1 '^wearplot: torn.tsv: ' wearplot torn.tsv
 fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
 fails 'a missing field' 1 'want a field of this list: height, pressure' wearplot --field gap contact.nrrd
+# What is doubtful is drawn, and marked.
+sed 's/^seed:=1/seed:=1\ndoubtful:=worn/; /^stream:=/d' contact.nrrd >worn.nrrd 2>/dev/null
+printf '# doubtful: pulses differ\ndiameter\ttime1\tamplitude\n1e-4\t1\t0.1\n1e-4\t1.1\t0.1\n' >poor.tsv
+sensorsim --duration 2s poor.tsv >poor.au 2>/dev/null
+for f in worn.nrrd poor.tsv poor.au; do
+	wearplot --title new --output p.svg $f 2>err
+	is "$f is drawn and marked as doubtful" \
+		"$? $(grep -c 'new - doubtful' p.svg) $(grep -c "$f: doubtful by its own account: [pw]" err)" '3 1 1'
+done
+wearplot --found poor.tsv --output p.svg signal.au 2>err
+is 'so are doubtful particles in a signal' \
+	"$? $(grep -c 'particles are doubtful' p.svg) $(grep -c 'poor.tsv: doubtful' err)" '3 1 1'
+printf 'time1\ttime2\tamplitude\n0.1\t0.12\t0.1\n0.2\t0.22\tnan\n' >some.tsv
+wearplot --found some.tsv --output p.svg signal.au 2>err
+is 'rows without an amplitude are reported once' "$(cat err)" \
+	"wearplot: some.tsv: 1 of 2 rows have no amplitude and are left out"
 fails 'a missing record' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
 fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.nrrd
 fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd

@@ -45,7 +45,7 @@ last=$(awk -v b="$begin" 'BEGIN { printf "%.3f", b + 0.12 }')
 picture() {
 	picture=$1 stream=$2 text=$3
 	shift 3
-	wearplot --size 480x340 --output "$picture.svg" "$@" "$stream" || return 0
+	wearplot --size 480x340 --output "$picture.svg" "$@" "$stream" || [ $? = 3 ] || return 0
 	printf '<figure><img alt="%s" src="data:image/svg+xml;base64,' "${text%%.*}"
 	base64 <"$picture.svg" | tr -d '\n'
 	printf '">\n<figcaption>%s\n<details><summary>Command</summary><pre>%s\n%s</pre></details></figcaption></figure>\n' \

@@ -35,7 +35,7 @@ struct wp_contact_par {
 	double estar;     /* contact modulus, Pa */
 	double hardness;  /* largest pressure, Pa; 0: none */
 	int periodic;     /* 1: periodic; 0: no load outside the grid */
-	double tolerance; /* relative duality gap at which the iteration stops */
+	double tolerance; /* relative duality gap at which the iteration stops, <= 0.1 */
 	int threads;      /* >= 1 */
 };
 

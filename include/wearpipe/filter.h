@@ -34,7 +34,8 @@ WP_API struct wp_filter *wp_filter_new(
 WP_API void wp_filter_free(struct wp_filter *f);
 
 /* Filters frames in place; samples before the first call are zero, and each call
- * continues where the last one ended.  Symmetric taps delay by (n - 1) / 2 frames. */
+ * continues where the last one ended.  Symmetric taps delay by (n - 1) / 2 frames.
+ * WP_NUMBERS if a sample is not finite: nothing is filtered. */
 WP_API enum wp_status wp_filter_run(struct wp_filter *f, double *x, size_t frames);
 
 #ifdef __cplusplus

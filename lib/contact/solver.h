@@ -35,6 +35,10 @@
 
 #include "contact/problem.h"
 
+/* Largest useful tolerance: worn volumes of 24 rough surfaces are off by 0.05, 0.5, 2 and
+ * 29 % in root mean square or less for tolerances of 1e-3, 1e-2, 0.1 and 0.5. */
+#define CONTACT_LOOSEST 0.1
+
 struct contact;
 
 /* NULL if a parameter is out of range (errno EDOM) or memory is short (ENOMEM). */

@@ -145,6 +145,23 @@ double classes_detection(const struct classes *c, int k)
 	return detection_probability(&c->par.detection, c->edge[k]);
 }
 
+/* Largest volume of an undetected particle between two diameters, over the probability of
+ * its detection, without the upper end: below d50 that falls faster than the volume does,
+ * down to a third of d50. */
+static double heaviest_below_d50(const struct classes *c, double lower, double upper)
+{
+	enum { STEPS = 256 }; /* off by 1e-3 at most */
+	double end = fmin(upper, c->par.detection.d50), most = 0;
+
+	for (int i = 0; i < STEPS && lower < end; i++) {
+		double d = lower + i * (end - lower) / STEPS;
+
+		most = fmax(
+			most, ball(c, d) / detection_probability(&c->par.detection, d));
+	}
+	return most;
+}
+
 /* Adds up the classes from first to last. */
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
@@ -152,7 +169,9 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	double lower = c->edge[first], upper = c->edge[last + 1], low, high, squares = 0;
 	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
-	double heavy = ball(c, upper) / detection_probability(&c->par.detection, upper);
+	double below = heaviest_below_d50(c, lower, upper);
+	double heavy = fmax(
+		below, ball(c, upper) / detection_probability(&c->par.detection, upper));
 
 	*out = (struct class_count){ 0 };
 	for (int k = first; k <= last; k++) {
@@ -177,7 +196,7 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	out->volume.possible = heavy;
 	if (number[1].n > 0 &&
 		isinf(upper)) /* the largest observed particle limits an open class */
-		heavy = volume[1].largest;
+		heavy = fmax(below, volume[1].largest);
 	weighted_interval(&volume[1], heavy, c->par.confidence, &low, &out->volume.high);
 	out->number.largest = number[1].largest;
 	out->volume.largest = volume[1].largest;

@@ -476,6 +476,11 @@ long table_line(const struct table_in *t)
 	return t->number;
 }
 
+int table_missing(const struct table_in *t, int column)
+{
+	return is_missing(table_text(t, column));
+}
+
 double table_number(const struct table_in *t, int column)
 {
 	double v;

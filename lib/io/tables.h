@@ -48,6 +48,8 @@ long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
  * not a number dies.  A column below 0 gives NAN. */
 double table_number(const struct table_in *t, int column);
+/* Whether that cell is nan, NaN, NA or empty. */
+int table_missing(const struct table_in *t, int column);
 /* From then on table_number() multiplies the cells of the column by scale, and dies at a
  * further "# units:" line with other units. */
 void table_set_scale(struct table_in *t, int column, double scale);

@@ -261,29 +261,44 @@ static double *draw_all(const struct ensemble *e, uint64_t seed, long draws,
 	return NULL;
 }
 
-/* Interval of one quantity from its draws, which are reordered. */
-static void put_interval(double *x, long draws, double confidence, struct estimate *out)
+/* Interval of one quantity from its draws, which are reordered: its distances from the
+ * quantiles of the draws, of the logarithms of a positive quantity, times wider. */
+static void put_interval(
+	double *x, long draws, double confidence, double wider, struct estimate *out)
 {
 	size_t n = 0;
+	double low, high;
 
 	for (long b = 0; b < draws; b++)
 		if (!isnan(x[b]))
 			x[n++] = x[b];
+	out->low = out->high = NAN;
+	if (n == 0)
+		return;
 	sort_numbers(x, n);
-	out->low = n > 0 ? sorted_quantile(x, n, 0.5 - 0.5 * confidence) : NAN;
-	out->high = n > 0 ? sorted_quantile(x, n, 0.5 + 0.5 * confidence) : NAN;
+	low = sorted_quantile(x, n, 0.5 - 0.5 * confidence);
+	high = sorted_quantile(x, n, 0.5 + 0.5 * confidence);
+	if (x[0] > 0 && out->value > 0) {
+		out->low = out->value * pow(low / out->value, wider);
+		out->high = out->value * pow(high / out->value, wider);
+	} else {
+		out->low = out->value + wider * (low - out->value);
+		out->high = out->value + wider * (high - out->value);
+	}
 }
 
 enum num_status estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES])
 {
-	double *draw = draw_all(e, seed, draws, out);
+	double *draw = draw_all(e, seed, draws, out), k = ensemble_par(e)->realisations;
+	double confidence = ensemble_par(e)->confidence, p = 0.5 + 0.5 * confidence;
+	double wider = gsl_cdf_tdist_Pinv(p, k - 1) / gsl_cdf_ugaussian_Pinv(p) *
+		       sqrt(k / (k - 1));
 
 	if (!draw)
 		return NUM_MEMORY;
 	for (int q = 0; q < ESTIMATES; q++)
-		put_interval(
-			draw + q * draws, draws, ensemble_par(e)->confidence, &out[q]);
+		put_interval(draw + q * draws, draws, confidence, wider, &out[q]);
 	free(draw);
 	return NUM_OK;
 }

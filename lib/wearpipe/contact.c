@@ -30,7 +30,7 @@ struct wp_contact *wp_contact_new(
 	struct wp_contact *c;
 	enum wp_status why;
 
-	if (par->threads < 1)
+	if (par->threads < 1 || par->tolerance > CONTACT_LOOSEST)
 		return report(status, WP_DOMAIN);
 	c = calloc(1, sizeof *c);
 	if (!c)
@@ -89,6 +89,8 @@ static enum wp_status solve(struct wp_contact *c, const double *height,
 enum wp_status wp_contact_press(struct wp_contact *c, const double *height,
 	double pressure, double *p, double *gap, struct wp_contact_result *result)
 {
+	if (!(pressure >= 0))
+		return WP_DOMAIN;
 	return solve(c, height, CONTACT_PRESSURE, pressure, p, gap, result);
 }
 

@@ -1,5 +1,6 @@
 #include "report.h"
 #include "signal/filter/fir.h"
+#include <math.h>
 #include <stdlib.h>
 #include <wearpipe/filter.h>
 
@@ -50,6 +51,9 @@ enum wp_status wp_filter_run(struct wp_filter *f, double *x, size_t frames)
 {
 	size_t block = fir_block(f->fir);
 
+	for (size_t i = 0; i < frames * (size_t)f->channels; i++)
+		if (!isfinite(x[i]))
+			return WP_NUMBERS;
 	for (size_t done = 0; done < frames; done += block) {
 		size_t n = frames - done < block ? frames - done : block;
 

@@ -297,9 +297,6 @@ int main(int argc, char **argv)
 		abrasion_largest(friction, par.inlet, isnan(gap) ? 0 : gap));
 	if (population && isnan(gap))
 		gap = mean_gap(&par);
-	if (population && gap < population->diameter[0])
-		warn("particles between the gap of %g m and %g m are missing: the code does not count them",
-			gap, population->diameter[0]);
 	source = population ? particles_drawn(population, area, gap, (uint64_t)seed)
 			    : particles_read(argv[operand]);
 	stepped = particles_stepped(source);
@@ -324,6 +321,11 @@ int main(int argc, char **argv)
 			"mean_depth_rate1 mean_depth_rate2");
 	if (summary && population)
 		find_mean(par);
+	if (population && gap < population->diameter[0]) {
+		warn("particles between the gap of %g m and %g m are missing: the code does not count them",
+			gap, population->diameter[0]);
+		doubt("particles between the gap and 4 um are missing");
+	}
 	for (; particles_next(source, &in); gaps++)
 		run_gap(&in);
 	if (!isnan(load) && gaps == 0) {

@@ -26,13 +26,18 @@ static int is_event(const char *word)
 	return 0;
 }
 
+int verdict_column_alone(struct table_in *t)
+{
+	kind_column = table_find(t, "kind");
+	return table_find(t, "verdict");
+}
+
 int verdict_column(struct table_in *t)
 {
-	int column = table_find(t, "verdict");
+	int column = verdict_column_alone(t);
 
 	class_column =
 		non_ferrous_known() ? table_need(t, "class") : table_find(t, "class");
-	kind_column = table_find(t, "kind");
 	amplitude_column =
 		column >= 0 && class_column < 0 ? table_find(t, "amplitude") : -1;
 	return column;

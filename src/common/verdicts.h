@@ -1,5 +1,5 @@
 /* verdicts.h - which rows of duet's table are to be counted: an option of abrade,
- * ballcal, debriscount, rwl and wear-volume */
+ * ballcal, debriscount, rwl, sensorsim and wear-volume */
 #ifndef VERDICTS_H
 #define VERDICTS_H
 
@@ -18,6 +18,8 @@ enum verdict {
 
 /* The column of verdicts, or -1; finds that of classes, too. */
 int verdict_column(struct table_in *t);
+/* The same without classes, where diameters are wanted as they are. */
+int verdict_column_alone(struct table_in *t);
 /* Of the present row; counts what is doubtful.  column may be -1. */
 enum verdict verdict_of(const struct table_in *t, int column);
 /* Says how many rows have been left out since the last report, and adds them to the

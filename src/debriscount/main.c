@@ -36,7 +36,7 @@ static const struct opt opts[] = {
 		"classes of a standard", standards, 0 },
 	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
 		"one set of rows per period (default the whole record)", NULL, 0 },
-	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e12, "T",
+	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 1e-9, 1e12, "T",
 		"duration of the record (default until its last particle)", NULL, 0 },
 	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
 		"count separately for each value of this column: material, ...", NULL,
@@ -240,7 +240,7 @@ static double count_rows(
 		first = fmin(first, time);
 		last = fmax(last, time);
 		number++;
-		name = cb >= 0 ? table_text(t, cb) : "";
+		name = cb < 0 ? "" : table_missing(t, cb) ? "nan" : table_text(t, cb);
 		if (v == VERDICT_UNRESOLVED) {
 			double half = ce >= 0 ? sqrt(3) * table_number(t, ce) : 0;
 			const struct stretch stretch = stretch_of(t, &columns);
@@ -310,6 +310,10 @@ int main(int argc, char **argv)
 	else if (isnan(duration))
 		die(EXIT_RUN,
 			"%s: no particle: specify the length of the record with --duration",
+			table_name(t));
+	if (isnan(duration) && isnan(period) && time_column(t) >= 0 && !(last > 0))
+		die(EXIT_RUN,
+			"%s: no particle after 0 s: specify the length of the record with --duration",
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "

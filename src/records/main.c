@@ -7,6 +7,7 @@
 #include "common/raw_layout.h"
 #include "io/fields.h"
 #include "io/gsf.h"
+#include "io/reasons.h"
 #include "io/tables.h"
 #include "num/bytes.h"
 #include "source.h"
@@ -104,8 +105,11 @@ static void list_record(struct table_out *t, const struct record *r, long number
 /* Rows of samples and an empty line after each field: gnuplot's matrix layout. */
 static void print_text(const struct record *r)
 {
+	const char *why = record_get(r, "doubtful");
 	char text[NUMBER_TEXT];
 
+	if (why)
+		printf("# doubtful: %s\n", why);
 	for (int k = 0; k < r->nfields; k++) {
 		const double *x = r->data[k];
 
@@ -157,8 +161,9 @@ static void check_fields(char **first, const struct record *r, const struct sour
 struct output {
 	struct fields_out *fields;
 	struct table_out *table;
-	char *names;         /* of the fields of a table */
-	struct keys written; /* of records in it */
+	char *names;           /* of the fields of a table */
+	struct keys written;   /* of records in it */
+	struct reasons doubts; /* of those written, by their own account */
 	long records;
 };
 
@@ -257,6 +262,7 @@ static int picks_left(struct source *in)
 static void put_record(struct output *o, struct record *r, struct source *in)
 {
 	o->records++;
+	reasons_add(&o->doubts, record_get(r, "doubtful"));
 	switch (format) {
 	case LIST:
 		list_record(o->table, r, source_count(in));
@@ -286,16 +292,26 @@ static void put_record(struct output *o, struct record *r, struct source *in)
 	}
 }
 
-static void close_output(struct output *o)
+/* Returns the exit status: 3 if the records are doubtful, and the output shows or holds
+ * samples without the keys of their records. */
+static int close_output(struct output *o, const char *name)
 {
+	const char *why = NULL;
+
+	if (format == LIST || format == GSF || format == RAW)
+		why = reasons_warn(&o->doubts, name);
 	if (format == COUNT)
 		printf("%ld\n", o->records);
+	if (format == LIST && why)
+		table_comment(o->table, "doubtful", "%s", why);
 	if (o->fields)
 		fields_done(o->fields);
 	if (o->table)
 		table_done(o->table);
 	free(o->names);
 	keys_free(&o->written);
+	reasons_free(&o->doubts);
+	return why ? EXIT_NOCONV : EXIT_SUCCESS;
 }
 
 /* There may be nothing to list or count, but not to convert. */
@@ -319,11 +335,12 @@ static const struct raw_layout *layout(void)
 	return &raw;
 }
 
-static void convert(const char *path)
+static int convert(const char *path)
 {
 	struct source *in = source_open(path, layout());
 	struct output out = { 0 };
 	struct record r = { 0 };
+	int status;
 
 	open_output(&out);
 	while (next_record(in, &r)) {
@@ -334,10 +351,11 @@ static void convert(const char *path)
 		put_record(&out, &r, in);
 	}
 	check_picked(in);
-	close_output(&out);
+	status = close_output(&out, source_name(in));
 	record_free(&r);
 	source_close(in);
 	stats_set("records", (double)out.records);
+	return status;
 }
 
 int main(int argc, char **argv)
@@ -356,6 +374,6 @@ int main(int argc, char **argv)
 	else if (pretty)
 		show_pretty(argv[first]);
 	else
-		convert(argv[first]);
+		status = convert(argv[first]);
 	return shell_done(status);
 }

@@ -1,6 +1,7 @@
 #include "particle_source.h"
 #include "cli/msg.h"
 #include "common/materials.h"
+#include "common/verdicts.h"
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "material_options.h"
@@ -36,6 +37,7 @@ struct opt source_rows[] = {
 		0 },
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"density of the particles", 0, 0 },
+	OPT_TABLE(verdict_rows),
 	/* arrivals */
 	OPT_HEADING("Arrivals"),
 	{ 0, "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
@@ -60,14 +62,16 @@ struct source {
 	struct stream stream;
 	struct arrivals *arrivals; /* NULL: the table has times */
 	struct table_in *table;    /* NULL: particles are drawn */
-	int time_column, diameter_column, velocity_column, material_column, kind_column;
+	int time_column, diameter_column, velocity_column, material_column;
+	int verdict_column;
 	double *diameters; /* of a table without times */
 	const struct material **materials;
 	const struct material *material; /* of the particle returned last */
 	struct normals *normals;         /* of the drift of the flow */
 	struct wander drift;
-	uint64_t count; /* particles returned */
-	char *cmd;      /* pipeline that made the table; NULL: none */
+	uint64_t count;   /* particles returned */
+	uint64_t outside; /* of them, before or after the record */
+	char *cmd;        /* pipeline that made the table; NULL: none */
 	double slowest;
 };
 
@@ -85,6 +89,9 @@ void source_check(int operands)
 		die(EXIT_USAGE, "--uniform draws the particles: omit the file");
 	if (uniform.n && (number >= 0) + !isnan(concentration) != 1)
 		die(EXIT_USAGE, "--uniform requires one of --number and --concentration");
+	if (uniform.n && opt_given("doubtful"))
+		die(EXIT_USAGE,
+			"--doubtful is for a table of particles, not for --uniform");
 	if (!uniform.n && (number >= 0 || !isnan(concentration)))
 		die(EXIT_USAGE, "--number and --concentration require --uniform");
 	if (burst > 0 && (isnan(span) || isnan(period)))
@@ -150,8 +157,7 @@ static double read_diameter(const struct source *s)
 static int next_line(struct source *s)
 {
 	while (table_next(s->table))
-		if (s->kind_column < 0 ||
-			strcmp(table_text(s->table, s->kind_column), "particle") == 0)
+		if (verdict_of(s->table, s->verdict_column) == VERDICT_SURE)
 			return 1;
 	return 0;
 }
@@ -217,7 +223,7 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	s->diameter_column = table_need_quantity(s->table, "diameter", UNIT_LENGTH);
 	s->velocity_column = table_find_quantity(s->table, "velocity", UNIT_SPEED);
 	s->material_column = table_find(s->table, "material");
-	s->kind_column = table_find(s->table, "kind");
+	s->verdict_column = verdict_column_alone(s->table);
 	s->time_column = table_find_quantity(s->table, "time", UNIT_TIME);
 	if (s->time_column < 0)
 		s->time_column = table_find_quantity(s->table, "time1", UNIT_TIME);
@@ -307,6 +313,7 @@ int source_next(struct source *s, struct passage *p)
 		if (fmax(p->time[0], p->time[1]) + half > 0 &&
 			(isnan(source_duration) || p->time[0] - half < source_duration))
 			return 1;
+		s->outside++;
 		if (p->time[0] - sensors_half_pulse(s->slowest) >= source_duration)
 			return 0;
 	}
@@ -343,8 +350,12 @@ const char *source_doubted(struct source *s)
 	if (!s->table)
 		return NULL;
 	/* The comment may follow the rows, of which the last may be after the record. */
-	while (table_next(s->table))
-		;
+	while (next_line(s))
+		s->outside++;
+	if (s->outside > 0)
+		warn("%s: %.0f particles pass before or after the record",
+			table_name(s->table), (double)s->outside);
+	verdict_report();
 	return table_doubted(s->table);
 }
 

@@ -1,5 +1,6 @@
 #include "formats_in.h"
 #include "cli/msg.h"
+#include "cli/unit.h"
 #include "points.h"
 #include <ctype.h>
 #include <math.h>
@@ -297,10 +298,10 @@ static double sdf_height(const struct content *c, const char **at)
 {
 	size_t n = strcspn(*at, " \t\r\n,");
 	char word[32], *end;
-	double v = strtod(*at, &end);
+	double v = decimal_parse(*at, &end);
 
 	snprintf(word, sizeof word, "%.*s", n < sizeof word ? (int)n : 31, *at);
-	if (end != *at + n) {
+	if (end != *at + n || (isinf(v) && isdigit((unsigned char)end[-1]))) {
 		v = NAN;
 		if (n >= sizeof word || !is_gap(word))
 			die(EXIT_RUN, "%s: '%s' among the heights, want a number or BAD",
@@ -337,6 +338,9 @@ static void sdf_text(const struct content *c, const struct told *told, struct re
 		v = sdf_height(c, &at);
 		*z++ = v == told->missing ? NAN : v * unit;
 	}
+	if (!*at)
+		warn("%s: no newline at the end: the last height may be truncated",
+			c->name);
 	at += strspn(at, " \t\r\n,");
 	if (*at && *at != '*')
 		die(EXIT_RUN, "%s: more than %zu heights: '%.12s'", c->name, n, at);

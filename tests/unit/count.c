@@ -394,6 +394,39 @@ static void check_blind(void)
 	classes_free(c);
 }
 
+/* Nor may what a sensor hardly sees hide volume: the lightest particle of such a class is
+ * the one that is missed most, and has the largest weight. */
+static void check_faint_volume(void)
+{
+	static const double edge[] = { 55e-6, 65e-6 };
+	struct classes_par par = { { 70e-6, 5.7, 3 }, 0.9, NULL };
+	struct classes *c = classes_new(edge, 2, &par);
+	double want = 40 * M_PI / 6 * (pow(65e-6, 4) - pow(55e-6, 4)) / 4 / 10e-6;
+	double missed[2] = { 0 };
+
+	for (int run = 0; run < 1000; run++) {
+		struct class_count out;
+
+		classes_clear(c);
+		for (int n = poisson(40); n > 0; n--) {
+			double d = 55e-6 + 10e-6 * uniform();
+
+			if (uniform() < detection_probability(&par.detection, d))
+				classes_add(c, d, 1);
+		}
+		classes_count(c, 0, &out);
+		missed[0] += out.volume.low > want;
+		missed[1] += out.volume.high < want;
+	}
+	ok(missed[0] <= 70,
+		"90 %% intervals begin above the volume in %.0f of 1000 cases",
+		missed[0]);
+	ok(missed[1] <= 70,
+		"they end below it in %.0f, although most particles are missed",
+		missed[1]);
+	classes_free(c);
+}
+
 int main(void)
 {
 	check_poisson();
@@ -409,5 +442,6 @@ int main(void)
 	check_stretches(NULL);
 	check_stretches(of_bronze);
 	check_blind();
+	check_faint_volume();
 	return tap_done();
 }

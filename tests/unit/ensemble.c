@@ -2,6 +2,7 @@
 #include "num/philox.h"
 #include "stats/estimates.h"
 #include "tap.h"
+#include <gsl/gsl_cdf.h>
 
 /* Realisations 7 and 2, out of order; diameter and volume as easy numbers. */
 static const struct particle_row particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
@@ -88,6 +89,7 @@ static void test_estimates(void)
 	};
 	struct ensemble *e = make(&par, 0);
 	struct estimate all[ESTIMATES];
+	double wider;
 	size_t n;
 
 	ensemble_groups(e, &n);
@@ -97,11 +99,13 @@ static void test_estimates(void)
 	near(all[ESTIMATE_VOLUME_STEP].value, 31 / 6., 1e-14,
 		"the volume per step is right");
 	ok(estimate_bootstrap(e, 1, 200, all) == 0, "the bootstrap succeeds");
-	/* Draws: 7 twice, 2 twice, or both. */
-	near(all[ESTIMATE_VOLUME_STEP].low, 13 / 3., 1e-14,
-		"the lowest draw is the lowest value");
-	near(all[ESTIMATE_VOLUME_STEP].high, 6, 1e-14,
-		"the highest draw is the highest value");
+	/* Draws: 7 twice, 2 twice, or both.  Student's t of one degree over the normal
+	 * quantile, and half of the variance. */
+	wider = 6.313751514675043 / 1.6448536269514722 * sqrt(2);
+	near(all[ESTIMATE_VOLUME_STEP].low, 31 / 6. * pow(26 / 31., wider), 1e-12,
+		"the interval begins as far below as the lowest draw, times wider");
+	near(all[ESTIMATE_VOLUME_STEP].high, 31 / 6. * pow(36 / 31., wider), 1e-12,
+		"it ends as far above as the highest draw, times wider");
 	ensemble_free(e);
 }
 
@@ -167,6 +171,45 @@ static void test_large(void)
 	ensemble_free(e);
 }
 
+/* Few realisations whose particles are alike. */
+static void test_few(void)
+{
+	enum { RUNS = 200, REALISATIONS = 3, EACH = 3 };
+	struct ensemble_par par = {
+		.first = 1, .high = INFINITY, .confidence = 0.9, .groups = 8
+	};
+	uint64_t at = 0;
+	int held = 0;
+
+	for (int run = 0; run < RUNS; run++) {
+		struct ensemble *e = ensemble_new(&par);
+		struct estimate out[ESTIMATES];
+
+		for (long r = 0; r < REALISATIONS; r++) {
+			double own = gsl_cdf_ugaussian_Pinv(
+				philox_uniform(9, 0, RNG_BOOTSTRAP, at++));
+
+			for (int i = 0; i < EACH; i++) {
+				double d = gsl_cdf_ugaussian_Pinv(
+					philox_uniform(9, 0, RNG_BOOTSTRAP, at++));
+
+				ensemble_add(e, &(struct particle_row){ r, 1,
+							30 + 4 * own + 4 * d, 1, 1 });
+			}
+		}
+		ensemble_close(e);
+		estimate_all(e, out);
+		estimate_bootstrap(e, (uint64_t)run, 199, out);
+		held += out[ESTIMATE_MEAN_DIAMETER].low <= 30 &&
+			out[ESTIMATE_MEAN_DIAMETER].high >= 30;
+		ensemble_free(e);
+	}
+	/* Three standard deviations of a binomial count of 0.9. */
+	ok(fabs(held - 0.9 * RUNS) < 13,
+		"90 %% intervals of three realisations contain the mean diameter in %d of %d cases",
+		held, RUNS);
+}
+
 int main(void)
 {
 	test_sums();
@@ -174,5 +217,6 @@ int main(void)
 	test_estimates();
 	test_refusals();
 	test_large();
+	test_few();
 	return tap_done();
 }
