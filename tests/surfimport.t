@@ -426,6 +426,12 @@ printf 'x/um z/m\n0 5\n1 6\n' >two.txt
 surfimport --profile two.txt >b.nrrd 2>err
 is "with --profile they are a profile" "$? $(heights b.nrrd) $(cat err)" "0 5 6 "
 
+printf '# doubtful: the contact did not converge\n1 2 3\n2 3 5\n' >doubt.txt
+surfimport --pixel 1um --height-unit 1um doubt.txt >b.nrrd 2>err
+is "text that states that it is doubtful has status 3" "$?" 3
+like "and a warning" "$(cat err)" "did not converge"
+roughgen --measure b.nrrd >/dev/null 2>err
+is "and the heights are doubtful" "$?" 3
 printf '1e400 2\n3 4\n5 7\n' >huge.txt
 fails "a height beyond double precision is no missing one" 1 "line 1: not a row of numbers" \
 	surfimport --pixel 1um --height-unit 1m huge.txt

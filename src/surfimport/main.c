@@ -5,6 +5,7 @@
 #include "cli/stats.h"
 #include "formats_in.h"
 #include "io/fields.h"
+#include "io/reasons.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,6 +137,7 @@ int main(int argc, char **argv)
 	struct fields_out *out;
 	FILE *f;
 	double gaps = 0, most = 0;
+	const char *why;
 	size_t n;
 
 	int operand = opt_parse(&prog, argc, argv);
@@ -172,7 +174,8 @@ int main(int argc, char **argv)
 	out = fields_create(NULL);
 	fields_write(out, &r, 0);
 	fields_done(out);
+	why = reasons_tell(c.name, record_get(&r, "doubtful"));
 	record_free(&r);
 	free(c.data);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(why ? EXIT_NOCONV : EXIT_SUCCESS);
 }

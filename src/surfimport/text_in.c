@@ -54,6 +54,7 @@ struct text {
 	long empty;   /* the last empty line since the last row, 0: none */
 	long inner;   /* the first one between rows */
 	long gaps;    /* rows below empty lines */
+	char *doubt;  /* a comment "# doubtful:" */
 	char *header; /* the last line that is not a row of numbers */
 	long header_line;
 	struct pairs pairs;
@@ -223,6 +224,7 @@ static void read_rows(struct text *t, char *text)
 	long missing = 0; /* rows before the first number */
 
 	while (rest && *rest) {
+		static const char doubtful[] = "# doubtful: ";
 		char *line = rest, *end = strpbrk(line, "\r\n"), *copy;
 		int n;
 
@@ -233,6 +235,8 @@ static void read_rows(struct text *t, char *text)
 		if (!end)
 			warn("%s: line %ld: no newline at the end: the last row may be truncated",
 				t->c->name, t->line);
+		if (!t->doubt && strncmp(line, doubtful, sizeof doubtful - 1) == 0)
+			t->doubt = line + sizeof doubtful - 1;
 		/* Empty cells alone are a row of missing samples, below a heading none.
 		 */
 		if (*line == '#' || (!line[strspn(line, " \t;,")] &&
@@ -529,6 +533,8 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		for (size_t i = 0; i < t.n; i++)
 			z[i] = t.value[i] == told->missing ? NAN : t.value[i] * unit;
 	}
+	if (t.doubt)
+		record_set(r, "doubtful", "%s", t.doubt);
 	free(t.value);
 	free(t.header);
 	free(text);
