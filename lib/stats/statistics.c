@@ -530,6 +530,12 @@ enum num_status power_fit(
 
 struct estimate sample_mean(const struct running *r, double confidence)
 {
-	return t_interval(r->n > 0 ? r->mean : NAN, sqrt(running_variance(r) / r->n),
-		r->n - 1, confidence);
+	double mean = r->n > 0 ? r->mean : NAN, deviation;
+	struct estimate e;
+
+	deviation = sqrt(running_variance(r) / r->n);
+	if (!(mean > 0))
+		return t_interval(mean, deviation, r->n - 1, confidence);
+	e = t_interval(log(mean), deviation / mean, r->n - 1, confidence);
+	return (struct estimate){ mean, exp(e.low), exp(e.high) };
 }

@@ -58,7 +58,8 @@ struct power {
 enum num_status power_fit(
 	const double *x, const double *y, size_t n, double confidence, struct power *p);
 
-/* The mean of values, with its interval by Student's t. */
+/* The mean of values, with its interval by Student's t; that of its logarithm if it is
+ * positive, since positive values are rather skewed to the right. */
 struct estimate sample_mean(const struct running *r, double confidence);
 
 #endif
