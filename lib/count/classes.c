@@ -18,6 +18,7 @@ struct classes {
 	double *most; /* upper bound of the particles above an edge in unresolved sections
 		       */
 	double *most_volume; /* upper bound of their volume */
+	double *heavy;       /* of an undetected particle of a class, below d50 */
 	struct class *class;
 	int unknown; /* nothing bounds an unresolved section */
 };
@@ -30,6 +31,23 @@ static double ball(const struct classes *c, double d)
 	return M_PI / 6 * size * size * size;
 }
 
+/* Largest volume of an undetected particle between two diameters, over the probability of
+ * its detection, without the upper end: below d50 that falls faster than the volume does,
+ * down to a third of d50. */
+static double heaviest_below_d50(const struct classes *c, double lower, double upper)
+{
+	enum { STEPS = 256 }; /* off by 1e-3 at most */
+	double end = fmin(upper, c->par.detection.d50), most = 0;
+
+	for (int i = 0; i < STEPS && lower < end; i++) {
+		double d = lower + i * (end - lower) / STEPS;
+
+		most = fmax(
+			most, ball(c, d) / detection_probability(&c->par.detection, d));
+	}
+	return most;
+}
+
 struct classes *classes_new(const double *edge, int n, const struct classes_par *par)
 {
 	struct classes *c = calloc(1, sizeof *c);
@@ -38,7 +56,7 @@ struct classes *classes_new(const double *edge, int n, const struct classes_par 
 		return NULL;
 	c->par = *par;
 	c->n = n;
-	c->edge = calloc(3 * ((size_t)n + 1), sizeof *c->edge);
+	c->edge = calloc(4 * ((size_t)n + 1), sizeof *c->edge);
 	c->class = calloc((size_t)n, sizeof *c->class);
 	if (!c->edge || !c->class) {
 		classes_free(c);
@@ -46,8 +64,11 @@ struct classes *classes_new(const double *edge, int n, const struct classes_par 
 	}
 	c->most = c->edge + n + 1;
 	c->most_volume = c->most + n + 1;
+	c->heavy = c->most_volume + n + 1;
 	memcpy(c->edge, edge, (size_t)n * sizeof *edge);
 	c->edge[n] = INFINITY;
+	for (int k = 0; k < n; k++)
+		c->heavy[k] = heaviest_below_d50(c, edge[k], c->edge[k + 1]);
 	return c;
 }
 
@@ -145,23 +166,6 @@ double classes_detection(const struct classes *c, int k)
 	return detection_probability(&c->par.detection, c->edge[k]);
 }
 
-/* Largest volume of an undetected particle between two diameters, over the probability of
- * its detection, without the upper end: below d50 that falls faster than the volume does,
- * down to a third of d50. */
-static double heaviest_below_d50(const struct classes *c, double lower, double upper)
-{
-	enum { STEPS = 256 }; /* off by 1e-3 at most */
-	double end = fmin(upper, c->par.detection.d50), most = 0;
-
-	for (int i = 0; i < STEPS && lower < end; i++) {
-		double d = lower + i * (end - lower) / STEPS;
-
-		most = fmax(
-			most, ball(c, d) / detection_probability(&c->par.detection, d));
-	}
-	return most;
-}
-
 /* Adds up the classes from first to last. */
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
@@ -169,9 +173,8 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	double lower = c->edge[first], upper = c->edge[last + 1], low, high, squares = 0;
 	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
-	double below = heaviest_below_d50(c, lower, upper);
-	double heavy = fmax(
-		below, ball(c, upper) / detection_probability(&c->par.detection, upper));
+	double heavy = ball(c, upper) / detection_probability(&c->par.detection, upper);
+	double below = 0;
 
 	*out = (struct class_count){ 0 };
 	for (int k = first; k <= last; k++) {
@@ -184,7 +187,9 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 		if (c->class[k].unresolved > 0) /* equal particles */
 			squares += pow(c->class[k].unresolved_volume, 2) /
 				   c->class[k].unresolved;
+		below = fmax(below, c->heavy[k]);
 	}
+	heavy = fmax(below, heavy);
 	out->sure = number[0].n;
 	out->doubtful = number[1].n - number[0].n;
 	out->number.value = number[0].sum + out->unresolved;

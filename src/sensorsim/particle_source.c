@@ -69,8 +69,8 @@ struct source {
 	const struct material *material; /* of the particle returned last */
 	struct normals *normals;         /* of the drift of the flow */
 	struct wander drift;
-	uint64_t count;   /* particles returned */
-	uint64_t outside; /* of them, before or after the record */
+	uint64_t count;   /* particles read or drawn */
+	uint64_t outside; /* of them, not in the record */
 	char *cmd;        /* pipeline that made the table; NULL: none */
 	double slowest;
 };
