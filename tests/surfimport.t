@@ -432,6 +432,10 @@ is "text that states that it is doubtful has status 3" "$?" 3
 like "and a warning" "$(cat err)" "did not converge"
 roughgen --measure b.nrrd >/dev/null 2>err
 is "and the heights are doubtful" "$?" 3
+printf '#doubtful: one\r\n# doubtful:\r\n1 2 3\r\n2 3 5\r\n#  doubtful:  two\r\n# doubtful: one\r\n' >doubt.txt
+surfimport --pixel 1um --height-unit 1um doubt.txt >b.nrrd 2>err
+is "all reasons are taken over, each once" "$? $(cat err)" \
+	"3 surfimport: doubt.txt: doubtful by its own account: one; two"
 printf '1e400 2\n3 4\n5 7\n' >huge.txt
 fails "a height beyond double precision is no missing one" 1 "line 1: not a row of numbers" \
 	surfimport --pixel 1um --height-unit 1m huge.txt

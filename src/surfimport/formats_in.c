@@ -1,6 +1,5 @@
 #include "formats_in.h"
 #include "cli/msg.h"
-#include "cli/unit.h"
 #include "points.h"
 #include <ctype.h>
 #include <math.h>
@@ -192,6 +191,7 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	double dx = NAN, dy = NAN, unit, nx = 0, ny = 0, missing = told->missing;
 	size_t length, at;
 	const char *descr, *shape, *fortran;
+	enum points found = POINTS_NONE;
 	struct grid grid;
 	char *header, close = 0;
 	int type = 0;
@@ -247,8 +247,11 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 		take(c, at + length, 0, (enum sample_type)type, descr[1] == '>', unit,
 			missing, r);
 	}
-	if (r->nx >= 3 &&
-		points_find(r->data[0], (size_t)r->ny, (size_t)r->nx, &grid) > POINTS_FEW)
+	if (r->nx >= 3)
+		found = points_find(r->data[0], (size_t)r->ny, (size_t)r->nx, &grid);
+	if (found == POINTS_FEW)
+		free(grid.at);
+	if (found > POINTS_FEW)
 		die(EXIT_RUN,
 			"%s: rows look like points x, y, z: want a matrix of heights, or points "
 			"as text",
@@ -298,10 +301,10 @@ static double sdf_height(const struct content *c, const char **at)
 {
 	size_t n = strcspn(*at, " \t\r\n,");
 	char word[32], *end;
-	double v = decimal_parse(*at, &end);
+	double v = height_parse(*at, &end);
 
 	snprintf(word, sizeof word, "%.*s", n < sizeof word ? (int)n : 31, *at);
-	if (end != *at + n || (isinf(v) && isdigit((unsigned char)end[-1]))) {
+	if (end != *at + n) {
 		v = NAN;
 		if (n >= sizeof word || !is_gap(word))
 			die(EXIT_RUN, "%s: '%s' among the heights, want a number or BAD",

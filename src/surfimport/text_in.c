@@ -1,6 +1,7 @@
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include "formats_in.h"
+#include "io/reasons.h"
 #include "points.h"
 #include <ctype.h>
 #include <math.h>
@@ -54,10 +55,10 @@ struct text {
 	long empty;   /* the last empty line since the last row, 0: none */
 	long inner;   /* the first one between rows */
 	long gaps;    /* rows below empty lines */
-	char *doubt;  /* a comment "# doubtful:" */
 	char *header; /* the last line that is not a row of numbers */
 	long header_line;
 	struct pairs pairs;
+	struct reasons doubts; /* of the comments "# doubtful:" */
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -101,6 +102,15 @@ int is_gap(const char *s)
 	return 0;
 }
 
+double height_parse(const char *text, char **end)
+{
+	double v = decimal_parse(text, end);
+
+	if (isinf(v) && isdigit((unsigned char)(*end)[-1]))
+		*end = (char *)text;
+	return v;
+}
+
 /* Reads one cell; 0 if it is not a number. */
 static int cell(const struct text *t, char *s, double *v)
 {
@@ -120,9 +130,8 @@ static int cell(const struct text *t, char *s, double *v)
 		return 0;
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
-	*v = decimal_parse(s, &end);
-	/* infinity denotes a missing sample, a number beyond double precision none */
-	return end != s && !*end && !(isinf(*v) && isdigit((unsigned char)end[-1]));
+	*v = height_parse(s, &end);
+	return end != s && !*end;
 }
 
 static void look_at(struct pairs *p, const char *s, int second)
@@ -218,13 +227,26 @@ static int is_torn_row(const struct text *t, const char *line)
 	return n == t->columns && 2 * numbers >= n;
 }
 
+/* Keeps the reason of a comment "# doubtful:". */
+static void read_comment(struct text *t, const char *s)
+{
+	static const char name[] = "doubtful:";
+
+	s += strspn(s, " \t");
+	if (strncmp(s, name, sizeof name - 1) != 0)
+		return;
+	s += sizeof name - 1;
+	s += strspn(s, " \t");
+	if (*s)
+		reasons_add(&t->doubts, s);
+}
+
 static void read_rows(struct text *t, char *text)
 {
 	char *rest = text;
 	long missing = 0; /* rows before the first number */
 
 	while (rest && *rest) {
-		static const char doubtful[] = "# doubtful: ";
 		char *line = rest, *end = strpbrk(line, "\r\n"), *copy;
 		int n;
 
@@ -235,8 +257,8 @@ static void read_rows(struct text *t, char *text)
 		if (!end)
 			warn("%s: line %ld: no newline at the end: the last row may be truncated",
 				t->c->name, t->line);
-		if (!t->doubt && strncmp(line, doubtful, sizeof doubtful - 1) == 0)
-			t->doubt = line + sizeof doubtful - 1;
+		if (*line == '#')
+			read_comment(t, line + 1);
 		/* Empty cells alone are a row of missing samples, below a heading none.
 		 */
 		if (*line == '#' || (!line[strspn(line, " \t;,")] &&
@@ -437,7 +459,11 @@ static int points_read(const struct text *t, const struct told *told, struct rec
 	if (t->columns < 3)
 		return 0;
 	found = points_find(t->value, n, (size_t)t->columns, &g);
-	if ((found == POINTS_NONE || (found == POINTS_FEW && t->columns > 3)) && !named)
+	if (found == POINTS_FEW && t->columns > 3 && !named) {
+		free(g.at);
+		return 0;
+	}
+	if (found == POINTS_NONE && !named)
 		return 0;
 	if (t->columns > 3)
 		die(EXIT_RUN,
@@ -533,8 +559,9 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		for (size_t i = 0; i < t.n; i++)
 			z[i] = t.value[i] == told->missing ? NAN : t.value[i] * unit;
 	}
-	if (t.doubt)
-		record_set(r, "doubtful", "%s", t.doubt);
+	if (reasons_text(&t.doubts))
+		record_set(r, "doubtful", "%s", reasons_text(&t.doubts));
+	reasons_free(&t.doubts);
 	free(t.value);
 	free(t.header);
 	free(text);
