@@ -423,7 +423,7 @@ fails "a negative volume of which the error is known" 1 'line 2: a volume of -1e
 	rwl --threshold-volume 1mm3 --state-error 1e-11 known.tsv
 fails "text for a number" 1 'text.tsv' rwl text.tsv
 fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
-fails "a step that occurs twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new --wear again.tsv --step-time 1h
+fails "a step that occurs twice" 1 'again.tsv: realisation 0 has a step twice' rwl --new --wear again.tsv --step-time 1h
 fails "no fragment" 1 'none.tsv: no fragment' rwl --new --wear none.tsv --step-time 1h
 fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new --wear negative.tsv --step-time 1h
 fails "a step that is not an integer" 1 'half.tsv: line 2: step' rwl --new --wear half.tsv --step-time 1h

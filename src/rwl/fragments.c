@@ -29,11 +29,20 @@ struct wear {
 	int class;
 };
 
-static _Noreturn void apart(const struct partition *p, const char *file)
+/* Dies if the rows of a table cannot be read as realisations. */
+static void check_order(
+	const struct partition *p, const char *file, enum partition_status status)
 {
-	die(EXIT_RUN,
-		"%s: the rows of realisation %ld are not contiguous: sort the table by realisation",
-		file, partition_realisation(p));
+	if (status == PARTITION_MEMORY)
+		die(EXIT_RUN, "out of memory");
+	if (status == PARTITION_TWICE)
+		die(EXIT_RUN,
+			"%s: realisation %ld has a step twice: the numbers of joined ensembles must differ",
+			file, partition_realisation(p));
+	if (status == PARTITION_APART)
+		die(EXIT_RUN,
+			"%s: the rows of realisation %ld are not contiguous: sort the table by realisation",
+			file, partition_realisation(p));
 }
 
 static void read_row(struct partition *p, const struct wear *w, long row)
@@ -42,7 +51,6 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	double r = w->realisation < 0 ? (double)row : table_number(t, w->realisation);
 	double k = w->step < 0 ? 1 : table_number(t, w->step);
 	double v = table_number(t, w->volume);
-	enum partition_status status;
 
 	if (!(r >= 0 && r <= 1e15 && r == floor(r)))
 		die(EXIT_RUN,
@@ -54,15 +62,10 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	if (!(v >= 0 && v <= 1e3))
 		die(EXIT_RUN, "%s: line %ld: volume must be between 0 and 1000 m3",
 			w->file, table_line(t));
-	status = partition_fragment(p, w->class, (long)r, (long)k, v, 1,
-		table_number(t, w->diameter) >= pump.critical_size);
-	if (status == PARTITION_MEMORY)
-		die(EXIT_RUN, "out of memory");
-	if (status == PARTITION_TWICE)
-		die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice", w->file,
-			table_line(t), r, k);
-	if (status == PARTITION_APART)
-		apart(p, w->file);
+	check_order(p, w->file,
+		partition_fragment(p, w->class,
+			&(struct realisation_cell){ (long)r, (long)k, table_part(t), v, 1,
+				table_number(t, w->diameter) >= pump.critical_size }));
 	stats_add("fragments_read", 1);
 }
 
@@ -129,7 +132,6 @@ static void read_wear(struct partition *p, const char *option, char **cmd, char 
 	struct physics told;
 	const char *why;
 	long part;
-	enum partition_status status;
 
 	file[strcspn(file, ":")] = '\0';
 	if (rest)
@@ -154,18 +156,15 @@ static void read_wear(struct partition *p, const char *option, char **cmd, char 
 	w.diameter = isnan(pump.critical_size)
 			     ? -1
 			     : table_need_quantity(w.table, "diameter", UNIT_LENGTH);
-	status = partition_class(
-		p, table_find(w.table, "particle") >= 0, pressure, area, &w.class);
-	if (status == PARTITION_MANY)
-		die(EXIT_USAGE, "--wear: want at most %d tables", PARTITION_CLASSES_MAX);
-	if (status != PARTITION_OK)
+	w.class =
+		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
+	if (w.class < 0)
 		die(EXIT_RUN, "out of memory");
 	part = table_part(w.table);
 	for (long row = 0; table_next(w.table); row++) {
 		if (table_part(w.table) != part)
 			check_part(w.table, &told);
 		part = table_part(w.table);
-		partition_part(p, w.class, part);
 		read_row(p, &w, row);
 	}
 	if (simulated.count > 0) {
@@ -219,29 +218,19 @@ int fragments_close(
 	struct partition *p, const struct opt_texts *files, char *const *doubts)
 {
 	int doubtful = 0;
+	enum partition_status status =
+		partition_close(p, pump.fragment_area, pump.transition);
+	const char *file = files->v[partition_culprit(p)];
 
-	switch (partition_close(p, pump.fragment_area, pump.transition)) {
-	case PARTITION_OK:
-		break;
-	case PARTITION_EMPTY:
-		die(EXIT_RUN, "%s: no fragment in the steps from --first-step on",
-			files->v[partition_culprit(p)]);
-	case PARTITION_TWICE:
-		die(EXIT_RUN,
-			"%s: realisation %ld has a step twice: the numbers of joined ensembles must differ",
-			files->v[partition_culprit(p)], partition_realisation(p));
-	case PARTITION_APART:
-		apart(p, files->v[partition_culprit(p)]);
-	case PARTITION_PRESSURE:
+	check_order(p, file, status);
+	if (status == PARTITION_EMPTY)
+		die(EXIT_RUN, "%s: no fragment in the steps from --first-step on", file);
+	if (status == PARTITION_PRESSURE)
 		die(EXIT_USAGE, "--wear %s: each of several tables requires a pressure",
-			files->v[partition_culprit(p)]);
-	case PARTITION_AREA:
+			file);
+	if (status == PARTITION_AREA)
 		die(EXIT_USAGE, "--wear: the areas add up to more than --area %g m2",
 			pump.pair.area);
-	case PARTITION_MANY:
-	case PARTITION_MEMORY:
-		die(EXIT_RUN, "out of memory");
-	}
 	for (int i = 0; i < files->n; i++) {
 		if (doubts[i])
 			warn("%.*s: doubtful by its own account: %s",

@@ -1,6 +1,5 @@
 /* partition.c - see partition.h */
 #include "life/prior/partition.h"
-#include "num/realisations.h"
 #include "num/running.h"
 #include "num/status.h"
 #include <gsl/gsl_randist.h>
@@ -23,11 +22,9 @@ struct class
 {
 	const struct partition *owner;
 	int sparse, twice;     /* twice: a realisation has a step twice */
-	long part;             /* of the table */
 	double pressure, area; /* own area after partition_close() */
 	struct realisations *reader;
-	long last_realisation, last_step; /* of the row before; -1: none */
-	long lowest, highest;             /* first and last realisation */
+	long lowest, highest; /* first and last realisation */
 	/* Over realisations, volume.n of them: volume of the steps that count for the
 	 * rate. */
 	struct running volume;
@@ -119,13 +116,14 @@ static enum num_status take_history(
 	double volume = 0, steps = 0;
 
 	for (size_t i = 0, end; i < n; i = end) {
-		double here = 0;
+		double here = 0, rows = 0;
 
 		for (end = i; end < n && cell[end].step == cell[i].step; end++) {
 			here += cell[end].volume;
+			rows += cell[end].count;
 			c->twice |= cell[end].part != cell[i].part;
 		}
-		c->twice |= !c->sparse && end > i + 1;
+		c->twice |= !c->sparse && rows > 1;
 		if (c->twice)
 			return NUM_DOMAIN;
 		if (cell[i].step < c->owner->first_step)
@@ -143,25 +141,20 @@ static enum num_status take_history(
 	return NUM_OK;
 }
 
-enum partition_status partition_class(
-	struct partition *p, int sparse, double pressure, double area, int *index)
+int partition_class(struct partition *p, int sparse, double pressure, double area)
 {
 	struct class *c = &p->class[p->nclasses];
 
 	if (p->nclasses == PARTITION_CLASSES_MAX)
-		return PARTITION_MANY;
+		return -1;
 	*c = (struct class){ .owner = p,
 		.sparse = sparse,
 		.pressure = pressure,
 		.area = area,
 		.lowest = LONG_MAX,
-		.highest = -1,
-		.last_realisation = -1 };
+		.highest = -1 };
 	c->reader = realisations_new(REALISATIONS_ROOM, take_history, c);
-	if (!c->reader)
-		return PARTITION_MEMORY;
-	*index = p->nclasses++;
-	return PARTITION_OK;
+	return c->reader ? p->nclasses++ : -1;
 }
 
 static enum partition_status reading(
@@ -175,11 +168,6 @@ static enum partition_status reading(
 	return status == REALISATIONS_OK ? PARTITION_OK : PARTITION_MEMORY;
 }
 
-void partition_part(struct partition *p, int class, long part)
-{
-	p->class[class].part = part;
-}
-
 void partition_simulated(struct partition *p, int class, long realisation, long step)
 {
 	widen(&p->class[class], realisation);
@@ -187,22 +175,15 @@ void partition_simulated(struct partition *p, int class, long realisation, long 
 		p->steps = step;
 }
 
-enum partition_status partition_fragment(struct partition *p, int class, long realisation,
-	long step, double volume, double count, double large)
+enum partition_status partition_fragment(
+	struct partition *p, int class, const struct realisation_cell *row)
 {
 	struct class *c = &p->class[class];
-	struct realisation_cell cell = { realisation, step, c->part, volume, count,
-		large };
 
 	p->culprit = class;
-	p->culprit_realisation = realisation;
-	if (step > p->steps)
-		p->steps = step;
-	if (!c->sparse && c->last_realisation == realisation && c->last_step == step)
-		return PARTITION_TWICE;
-	c->last_realisation = realisation;
-	c->last_step = step;
-	return reading(p, c, realisations_add(c->reader, &cell));
+	if (row->step > p->steps)
+		p->steps = row->step;
+	return reading(p, c, realisations_add(c->reader, row));
 }
 
 /* Moments of the rows read.  Realisations and steps that are missing from a particle

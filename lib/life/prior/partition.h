@@ -20,26 +20,15 @@
  * of the volumes over the largest that K of them can have.  The mean is never less than
  * M / 100, so that a mean life exists.  The first term is less than linear in e: a few
  * volumes from a long tail often lie close together, and then their e tells little of it.
- * The factors are those with which the interval holds a Pareto law of index 1.5 in 85 %
- * or more from three realisations on: 2.8 (e / sqrt(K))^(1/2) and 0.9 hold 84 % of
- * ensembles of four, 3.4 and 1.2 in place of these 85 %, but more than 97 % of ensembles
- * of 30 from a Pareto law of index 3.
- *
- * For 20 000 ensembles of 3, 4, 5, 10 and 30 realisations, a 90 % interval (exact
- * quantiles) contains the mean in 91 to 96 % for normal, uniform, gamma (shape 0.5 and
- * 1), lognormal (sigma 1 and 1.5) and Weibull volumes (shape 0.5 and 2), and in 91 to
- * 96, 89 to 93 and 85 to 87 % for a Pareto law of index 3, 2 and 1.5; if half of the
- * volumes are 0, in 94 to 98 % of the ensembles with any wear.  Of three such volumes all
- * are 0 in one ensemble of eight, which says nothing of the mean.  Resampling with
- * replacement gives 50 to 64 % for three realisations (tests/unit/partition.c).
+ * What chose the factors, and how often the interval holds the mean: see "Means of few
+ * realisations" in doc/trends.md and tests/unit/partition.c.
  *
  * Steps and units scatter about the mean because a component is a sum of parts that wear
  * independently.  There are as many parts as fragments fit, unless parts says otherwise.
  *
  *	struct partition *p = partition_new(2346.3e-6, 1, 0);
- *	int c;
- *	partition_class(p, 0, 21e6, -1, &c);
- *	partition_fragment(p, c, realisation, step, volume, count, large);
+ *	int c = partition_class(p, 0, 21e6, -1);
+ *	partition_fragment(p, c, &row);
  *	...
  *	if (partition_close(p, 1e-8, 0.1) == PARTITION_OK)
  *		partition_estimate(p, 0, &wear);
@@ -48,6 +37,7 @@
 #ifndef LIFE_PARTITION_H
 #define LIFE_PARTITION_H
 
+#include "num/realisations.h"
 #include <gsl/gsl_rng.h>
 #include <stddef.h>
 
@@ -58,7 +48,6 @@ struct partition;
 enum partition_status {
 	PARTITION_OK,
 	PARTITION_MEMORY,
-	PARTITION_MANY,     /* more than PARTITION_CLASSES_MAX classes */
 	PARTITION_EMPTY,    /* a class without fragments */
 	PARTITION_AREA,     /* classes cover more than the component */
 	PARTITION_PRESSURE, /* several classes need different pressures above 0 */
@@ -73,29 +62,25 @@ enum partition_status {
 struct partition *partition_new(double area, long first_step, int sizes);
 void partition_free(struct partition *p);
 
-/* Adds a class; *index is its number in later calls.  sparse: 1 if steps and realisations
+/* Adds a class and returns its number in later calls, -1 without memory or beyond
+ * PARTITION_CLASSES_MAX of them.  sparse: 1 if steps and realisations
  * missing from the input, up to the largest in it, shed nothing (particle tables); 0 if
  * they were not simulated.  pressure: nominal, Pa; NAN if there is only one class.
  * area: m2; < 0 if not given.  If no class has an area, the classes of lowest and highest
  * pressure divide what the zone leaves; otherwise a class without an area only
  * determines the wear within the zone. */
-enum partition_status partition_class(
-	struct partition *p, int sparse, double pressure, double area, int *index);
-
-/* The fragments of a class that follow are of this part of its table.  A step of a
- * realisation is in one part; else the ensembles of two studies have the same numbers. */
-void partition_part(struct partition *p, int class, long part);
+int partition_class(struct partition *p, int sparse, double pressure, double area);
 
 /* A sparse class has at least this realisation and this step, though nothing may have
  * been shed. */
 void partition_simulated(struct partition *p, int class, long realisation, long step);
 
-/* Adds the wear of one realisation in one step (from 1): volume worn (m3), number of
- * particles, and number of those of at least the critical size.  Consecutive calls for
- * the same realisation and step add up (particle tables); others return PARTITION_TWICE.
- */
-enum partition_status partition_fragment(struct partition *p, int class, long realisation,
-	long step, double volume, double count, double large);
+/* Adds a row, of count 1: wear of one realisation in one step (from 1); large: 1 for a
+ * particle of at least the critical size.  Of a sparse class the rows of a step add up,
+ * of another it has one row.  Either is in one part of the table; else the ensembles of
+ * two studies have the same numbers. */
+enum partition_status partition_fragment(
+	struct partition *p, int class, const struct realisation_cell *row);
 
 /* Call once, after the last fragment.  fragment_area: m2, > 0; transition: share of the
  * area in the linear zone if no class has an area. */
