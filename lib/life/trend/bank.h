@@ -1,49 +1,28 @@
 /* bank.h - remaining life by a bank of local trends in damage coordinates
  *
- * The damage D runs from 0 at the start (the median of the first three observations) to 1
- * at the threshold and grows at the rate dD/dt = v g(D), so that in the coordinate
+ * The model in words is in aopf(1), Long-term models, and its sweeps in doc/trends.md.
+ *
+ * The damage D grows from 0 at the start (the median of the first three observations) to
+ * 1 at the threshold at the rate dD/dt = v g(D), so that in the coordinate
  * h(D) = int_0^D dD' / g(D') it is a straight line, h = h_0 + v t, whose level and rate a
  * Kalman filter follows over gaps of any length.  Each row of a table defines a
- * coordinate (struct bank_shape), and so does the path of an earlier unit (fleet.h).
- * Each coordinate has trends with noise on the observation alone and three memories, a
- * discount that gives observation j of k the weight (j / k)^0, (j / k)^1 or (j / k)^3;
- * and trends whose damage is a Wiener process as well, with little or much wander.  The
- * variance of the noise is unknown, so that predictions are Student-t.
+ * coordinate (struct bank_shape), and so does the path of an earlier unit (fleet.h); each
+ * has a trend of every kind (bank_state.h).  The variance of the noise is unknown, so
+ * that predictions are Student-t.  Covariates x add w_k (x_k - x_0k) to the rate v.
+ *
  * The slope of h is taken at the predicted damage, as far as it is known, and not at that
- * observed; otherwise noise alone would favour curved coordinates.  Innovations are
- * limited to a Student's t as rare as three standard deviations.
+ * observed; otherwise noise alone would favour curved coordinates.
  *
- * Regime changes: as the age grows, particles are drawn from the present trends by their
- * weight.  From then on their rate grows as e^{g (t - onset)}, or has fallen to a lower
- * one.  Each is a Kalman filter of its own: this is a Rao-Blackwellised particle
- * filter (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  New particles replace the
- * lightest.
- *
- * Covariates (a load, a temperature) may scale the rate: with x at the row, the rate is
- * v + sum w_k (x_k - x_0k), and every trend estimates its own w along with h and v.  With
- * two values of x this can be any dependence.  A prior limits the effect, see loads.c.
+ * Trends whose regime has changed are particles drawn from the others by their weight:
+ * a Rao-Blackwellised particle filter (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).
  *
  * Trends and particles are averaged by the logarithm of their one-step predictive
  * densities, which fades with age as j / k; n rows count as sqrt(18 n), since they are
  * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
  * 52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
- * Outliers, repairs and idle times: a row that no trend predicts is held back, beyond a
- * Student's t as rare as five standard deviations.  If a later row agrees with them, it
- * is dropped as an outlier.  If 32 have been held, the level is estimated again and,
- * unless three rows running lie on the healthy side (a repair), the rates are as well; so
- * it is within those 32 after eight.  Until then more and more of the lives are those of
- * a copy that has done so, see passage.h.  After a gap of more than 3.5 usual ones, as
- * seen from a random time, and 3.5 of those that rows at a constant ratio of their ages
- * would have, the machine may have been idle; the next observation decides, if it does
- * not show a repair.
- *
- * Equal readings: where successive values are equal, readings are taken to be rounded to
- * the common divisor of the steps between them, and the noise to be at least that of
- * rounding.  A reading equal to the last one or to the farthest so far is either a new
- * one that is rounded to the same value, or frozen: the sensor sticks or has reached its
- * ceiling, and says nothing.  Every trend weighs the two by what it expects, and the
- * share of frozen readings is learned.
+ * A row that no trend predicts is held back until later rows tell whether it was an
+ * outlier, a repair or a new regime.
  *
  *	struct bank *b = bank_new(&par);
  *	for each row

@@ -122,7 +122,7 @@ struct place place_of(const struct bank *b, int shape, double damage);
 double damage_at(const struct bank *b, int shape, double h);
 
 /* The probability that the rows held back are the beginning of a new regime or follow a
- * repair, see passage.h. */
+ * repair. */
 double chance_of_jump(const struct bank *b);
 /* A copy that takes the rows held back for the beginning of a new regime, free it by
  * bank_free(); NULL: no memory. */
