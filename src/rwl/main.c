@@ -117,38 +117,47 @@ static void tell(long done, long paths)
 	progress("paths", (double)done, (double)paths);
 }
 
-static struct paths *draw_paths(struct partition *p)
+static struct forecast *new_forecast(
+	struct partition *p, enum pair_quantity quantity, int doubtful)
 {
 	int sizes = !isnan(pump.critical_size);
 	double slope[OPT_TEXTS_MAX];
-	struct paths_par par = { .seed = (uint64_t)seed,
+	struct forecast_par par = { .seed = (uint64_t)seed,
 		.first = (uint32_t)first_path,
 		.count = count,
 		.rule = (enum rate_rule)rule,
-		.area = pump.pair.area,
+		.pair = pump.pair,
+		.quantity = quantity,
 		.parts = (double)parts,
 		.critical = sizes ? pump.critical_probability : NAN,
 		.cumulative = !pump.per_step,
 		.step_time = step_time,
 		.slope = slope,
 		.nslopes = calibrations.n,
-		.progress = tell };
-	struct paths *e;
+		.progress = tell,
+		.from_new = new || quantity >= PAIR_VOLUME,
+		.doubtful = doubtful,
+		.skip = skip,
+		.horizon = horizon,
+		.grey = grey,
+		.load = covariates_future(),
+		.n_loads = covariates_count() };
+	struct forecast *f;
 
 	for (int i = 0; i < calibrations.n; i++)
 		slope[i] = state_slope(calibrations.v[i], &pump.pair, skip);
-	e = paths_new(&par, p);
-	if (!e)
+	f = forecast_new(&par, p);
+	if (!f)
 		die(EXIT_RUN, "out of memory");
 	progress(NULL, 0, 0);
 	if (p) {
 		stats_add("replicates", (double)count);
 		stats_add(sizes ? "sizes" : "sizes_skipped", (double)count);
 	}
-	return e;
+	return f;
 }
 
-static void write_rates(const struct paths *e, const char *cmd)
+static void write_rates(const struct path *path, const char *cmd)
 {
 	char *side = xprintf("%s --rates /dev/fd/3 3>&1 >/dev/null", cmd);
 	struct table_out *out = table_create(rates_file, side, "1 m3 m3 s 1",
@@ -156,36 +165,13 @@ static void write_rates(const struct paths *e, const char *cmd)
 
 	free(side);
 
-	for (long i = 0; i < count; i++) {
-		const struct path *path = paths_get(e, i);
-
+	for (long i = 0; i < count; i++, path++)
 		table_put_row(out,
 			(double[]){ (double)(first_path + i), path->wear.mean,
 				sqrt(path->wear.step_variance), path->step_time,
 				(double)path->large_step },
 			5);
-	}
 	table_done(out);
-}
-
-static struct forecast *new_forecast(
-	struct paths *e, enum pair_quantity quantity, int doubtful)
-{
-	struct forecast_par par = { .pair = pump.pair,
-		.quantity = quantity,
-		.from_new = new || quantity >= PAIR_VOLUME,
-		.scaled = wear_files.n && !doubtful &&
-			  (calibrations.n || !isnan(step_time)),
-		.skip = skip,
-		.horizon = horizon,
-		.grey = grey,
-		.load = covariates_future(),
-		.n_loads = covariates_count() };
-	struct forecast *f = forecast_new(e, &par);
-
-	if (!f)
-		die(EXIT_RUN, "out of memory");
-	return f;
 }
 
 /* Steps cannot resolve a life below one step. */
@@ -357,7 +343,6 @@ int main(int argc, char **argv)
 	char *made_by[OPT_TEXTS_MAX] = { NULL }, *doubts[OPT_TEXTS_MAX] = { NULL }, *cmd,
 	     *assumed;
 	struct partition *p = NULL;
-	struct paths *e;
 	struct lifetable *out;
 	struct forecast *f;
 	struct observations s = { 0 };
@@ -382,7 +367,7 @@ int main(int argc, char **argv)
 		status = EXIT_NOCONV;
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
-	e = draw_paths(p);
+	f = new_forecast(p, s.quantity, status != 0 || calibrations.n == 1);
 	if (calibrations.n == 1) {
 		warn("--calibrate %s: a single earlier unit: how units differ is unknown and not included",
 			calibrations.v[0]);
@@ -391,9 +376,8 @@ int main(int argc, char **argv)
 	state_check();
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
-		write_rates(e, cmd);
+		write_rates(forecast_paths(f), cmd);
 	out = open_table(&s, cmd, made_by, assumed);
-	f = new_forecast(e, s.quantity, status != 0);
 	if (new) {
 		forecast_foresee(f);
 		lifetable_put(out, 0, forecast_at(f, 0));
@@ -411,7 +395,6 @@ int main(int argc, char **argv)
 		     "--wear-rate filter gives an interval");
 	forecast_free(f);
 	partition_free(p);
-	paths_free(e);
 	if (s.table)
 		table_close(s.table);
 	for (int k = 0; k < wear_files.n; k++) {

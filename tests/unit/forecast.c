@@ -50,18 +50,18 @@ static void test_slope(void)
 
 static void test_forecast(void)
 {
-	struct paths_par paths = {
-		.seed = 1, .count = 8, .step_time = NAN, .area = 2e-3, .critical = NAN
-	};
-	struct forecast_par par = {
-		.pair = make_pair(), .quantity = PAIR_GAP, .horizon = NAN
-	};
-	struct paths *e = paths_new(&paths, NULL);
+	struct forecast_par par = { .seed = 1,
+		.count = 8,
+		.step_time = NAN,
+		.critical = NAN,
+		.pair = make_pair(),
+		.quantity = PAIR_GAP,
+		.horizon = NAN };
 	struct forecast_row row;
 	struct forecast *f;
 
 	par.pair.threshold_gap = 15e-6;
-	f = forecast_new(e, &par);
+	f = forecast_new(&par, NULL);
 	ok(f != NULL, "a forecast is made");
 	ok(forecast_add(f, 0, 10e-6, 10e-6, 0, NULL) == NUM_OK &&
 			forecast_at(f, 0).n == 0,
@@ -81,7 +81,7 @@ static void test_forecast(void)
 	forecast_free(f);
 
 	par.skip = 50;
-	f = forecast_new(e, &par);
+	f = forecast_new(&par, NULL);
 	forecast_add(f, 0, 5e-6, 5e-6, 0, NULL);
 	forecast_add(f, 100, 10e-6, 10e-6, 0, NULL);
 	forecast_add(f, 200, 11e-6, 11e-6, 0, NULL);
@@ -91,13 +91,12 @@ static void test_forecast(void)
 
 	par.skip = 0;
 	par.from_new = 1;
-	f = forecast_new(e, &par);
+	f = forecast_new(&par, NULL);
 	ok(forecast_add(f, 100, 12e-6, 12e-6, 0, NULL) == NUM_OK &&
 			forecast_at(f, 100).n == 1,
 		"a new pair at time 0 is a row");
 	near(forecast_at(f, 100).life[0], 150, 1e-9, "the new pair gives a rate");
 	forecast_free(f);
-	paths_free(e);
 }
 
 enum truth { LINEAR_LEAKAGE, LINEAR_GAP, GAMMA_GAP };
@@ -125,15 +124,13 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 {
 	enum { ROWS = 100, MOST = 400, COUNT = 200 };
 	struct pair pair = make_pair();
-	struct paths_par paths = { .seed = 1,
+	struct forecast_par par = { .seed = 1,
 		.count = COUNT,
 		.rule = RATE_FILTER,
 		.step_time = NAN,
-		.area = 2e-3,
-		.critical = NAN };
-	struct forecast_par par = { .quantity = by_gap ? PAIR_GAP : PAIR_LEAKAGE,
+		.critical = NAN,
+		.quantity = by_gap ? PAIR_GAP : PAIR_LEAKAGE,
 		.horizon = NAN };
-	struct paths *e = paths_new(&paths, NULL);
 	gsl_rng *rng = rng_new(11, number, RNG_LIFE);
 	double gap[MOST], limit, low, high, median, left;
 	struct forecast *f;
@@ -149,7 +146,7 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 		if (gap[end] >= limit)
 			break;
 	}
-	f = forecast_new(e, &par);
+	f = forecast_new(&par, NULL);
 	now = (int)(0.6 * end);
 	for (int k = 0; k <= now; k++) {
 		double span = by_gap ? limit - gap[0] : 1.3e-3 / 60;
@@ -167,7 +164,6 @@ static int follow_unit(enum truth truth, int by_gap, uint32_t number, double *er
 	*error = fabs(median - left) / end;
 	gsl_rng_free(rng);
 	forecast_free(f);
-	paths_free(e);
 	return low <= left && left <= high;
 }
 
