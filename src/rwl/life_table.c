@@ -10,7 +10,7 @@
 struct lifetable {
 	struct lifetable_par par;
 	struct table_out *out;
-	struct metrics metrics; /* with par.eol */
+	struct metrics metrics; /* with eol */
 	double median;          /* of the row written last */
 };
 
@@ -42,7 +42,7 @@ struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *pa
 	char *names = column_names(par), *units = column_units(par);
 
 	t->par = *par;
-	t->metrics.par = (struct metrics_par){ .eol = par->eol,
+	t->metrics = (struct metrics){ .eol = par->eol,
 		.alpha = par->cone,
 		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
 	t->median = NAN;
@@ -135,7 +135,7 @@ double lifetable_median(const struct lifetable *t)
 
 static void write_scores(struct table_out *out, const struct metrics *m)
 {
-	struct metrics_sum s = metrics_get(m);
+	struct metrics s = metrics_get(m);
 
 	table_comment(out, "predictions", "%zu", s.n);
 	table_comment(out, "infinite_medians", "%zu", s.infinite);

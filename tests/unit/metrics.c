@@ -95,9 +95,9 @@ static void check_quantile(void)
 /* Point predictions of life 100: late by 30 at t = 0, by 15 at 20, by 3 at 90. */
 static void check_sums(void)
 {
-	struct metrics m = { .par = { .eol = 100, .alpha = 0.2 } };
+	struct metrics m = { .eol = 100, .alpha = 0.2 };
 	struct metrics_row row;
-	struct metrics_sum s;
+	struct metrics s;
 	double pair[2] = { 8, 12 };
 
 	ok(add_point(&m, 0, 130, 90, 140, &row) == NUM_OK && !row.inside && row.covered,
@@ -128,8 +128,8 @@ static void check_sums(void)
 /* An infinite median must not make the mean errors of the others infinite. */
 static void check_infinite(void)
 {
-	struct metrics m = { .par = { .eol = 100, .alpha = 0.2, .limit = 1000 } };
-	struct metrics_sum s;
+	struct metrics m = { .eol = 100, .alpha = 0.2, .limit = 1000 };
+	struct metrics s;
 
 	add_point(&m, 0, INFINITY, 50, INFINITY, NULL);
 	add_point(&m, 20, 90, 70, 100, NULL);

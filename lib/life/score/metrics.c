@@ -59,19 +59,17 @@ static double share_within(const double *sample, size_t n, double lower, double 
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
 	double upper, const double *sample, size_t n, struct metrics_row *row)
 {
-	double truth = m->par.eol - t, wide = m->par.alpha * fabs(m->par.eol);
+	double truth = m->eol - t, wide = m->alpha * fabs(m->eol);
 	struct metrics_row r = { .truth = truth };
 
 	if (!(truth > 0) || isnan(point))
 		return NUM_DOMAIN;
 	r.error = point - truth;
 	r.accuracy = 1 - fabs(r.error) / truth;
-	r.mass = share_within(
-		sample, n, truth * (1 - m->par.alpha), truth * (1 + m->par.alpha));
+	r.mass = share_within(sample, n, truth * (1 - m->alpha), truth * (1 + m->alpha));
 	r.inside = r.mass >= 0.5;
 	r.covered = lower <= truth && truth <= upper;
-	r.crps =
-		metric_crps(sample, n, truth, m->par.limit > 0 ? m->par.limit : INFINITY);
+	r.crps = metric_crps(sample, n, truth, m->limit > 0 ? m->limit : INFINITY);
 	if (share_within(sample, n, truth - wide, truth + wide) < 0.5)
 		m->horizon = 0;
 	else if (m->horizon == 0)
@@ -80,34 +78,32 @@ enum num_status metrics_add(struct metrics *m, double t, double point, double lo
 	if (isinf(point)) {
 		m->infinite++;
 	} else {
-		m->error += r.error;
-		m->abs_error += fabs(r.error);
-		m->square_error += r.error * r.error;
+		m->bias += r.error;
+		m->mae += fabs(r.error);
+		m->rmse += r.error * r.error;
 		m->accuracy += r.accuracy;
 	}
 	m->crps += r.crps;
-	m->inside += (size_t)r.inside;
-	m->covered += (size_t)r.covered;
+	m->alpha_lambda += r.inside;
+	m->coverage += r.covered;
 	if (row)
 		*row = r;
 	return NUM_OK;
 }
 
-struct metrics_sum metrics_get(const struct metrics *m)
+struct metrics metrics_get(const struct metrics *m)
 {
+	struct metrics mean = *m;
 	double n = m->n ? (double)m->n : NAN;
 	double finite = m->n > m->infinite ? (double)(m->n - m->infinite) : NAN;
 
-	return (struct metrics_sum){
-		.n = m->n,
-		.infinite = m->infinite,
-		.bias = m->error / finite,
-		.mae = m->abs_error / finite,
-		.rmse = sqrt(m->square_error / finite),
-		.accuracy = m->accuracy / finite,
-		.alpha_lambda = (double)m->inside / n,
-		.horizon = m->n ? m->horizon : NAN,
-		.coverage = (double)m->covered / n,
-		.crps = m->crps / n,
-	};
+	mean.bias /= finite;
+	mean.mae /= finite;
+	mean.rmse = sqrt(m->rmse / finite);
+	mean.accuracy /= finite;
+	mean.alpha_lambda /= n;
+	mean.horizon = m->n ? m->horizon : NAN;
+	mean.coverage /= n;
+	mean.crps /= n;
+	return mean;
 }

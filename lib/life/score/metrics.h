@@ -4,9 +4,9 @@
  * interval.  With the true end of life T the truth is r = T - t.  Any unit of time, the
  * same one throughout.
  *
- *	struct metrics m = { .par = { .eol = 1186, .alpha = 0.2 } };
+ *	struct metrics m = { .eol = 1186, .alpha = 0.2 };
  *	metrics_add(&m, t, mean, q05, q95, sample, n, NULL);
- *	struct metrics_sum sum = metrics_get(&m);
+ *	struct metrics mean = metrics_get(&m);
  *
  * Definitions follow Saxena, Celaya, Saha, Saha, Goebel, "Metrics for offline
  * evaluation of prognostic performance", IJPHM 1 (2010), with accuracies relative
@@ -30,12 +30,6 @@ double metric_mean(const double *sorted, size_t n, size_t *failed);
  * samples.  Samples may be INFINITY, which needs a finite limit for a finite score. */
 double metric_crps(const double *sorted, size_t n, double truth, double limit);
 
-struct metrics_par {
-	double eol;   /* true end of life, on the axis of t */
-	double alpha; /* half-width of the accuracy cone, share > 0: 0.2 */
-	double limit; /* upper end of the CRPS integral; 0: none */
-};
-
 /* One prediction. */
 struct metrics_row {
 	double truth;    /* eol - t */
@@ -47,8 +41,12 @@ struct metrics_row {
 	double crps;
 };
 
-/* All predictions made before the end of life; NAN where there were none. */
-struct metrics_sum {
+/* All predictions made before the end of life: sums while they are added, all 0 at first
+ * but eol, alpha and limit; what metrics_get() returns are the means. */
+struct metrics {
+	double eol;   /* true end of life, on the axis of t */
+	double alpha; /* half-width of the accuracy cone, share > 0: 0.2 */
+	double limit; /* upper end of the CRPS integral; 0: none */
 	size_t n;
 	size_t infinite; /* those whose point is INFINITY, left out of the next four */
 	double bias, mae, rmse; /* mean error, mean |error|, root mean square error */
@@ -61,15 +59,6 @@ struct metrics_sum {
 	double crps;
 };
 
-/* Sums of the predictions so far; all 0 at first but par. */
-struct metrics {
-	struct metrics_par par;
-	size_t n, infinite, inside, covered;
-	double error, abs_error, square_error, accuracy, crps;
-	double horizon; /* truth at the start of the present run of good predictions; 0:
-			 * none */
-};
-
 /* Adds the prediction made at t, n >= 1 ascending samples; times must not decrease.  row
  * may be NULL.
  * An infinite point (a median where most samples never fail) has no error that could be
@@ -77,6 +66,6 @@ struct metrics {
  * when t >= eol or the point is NAN: nothing is counted. */
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
 	double upper, const double *sample, size_t n, struct metrics_row *row);
-struct metrics_sum metrics_get(const struct metrics *m);
+struct metrics metrics_get(const struct metrics *m); /* NAN where there were none */
 
 #endif
