@@ -7,11 +7,10 @@
 static const double ROUNDED = 1e-6;
 
 /* A fall at one moment is significant where two parallel lines leave so much less of the
- * squares than one line that the ratio F is above FALL, and the rest is as irregular as
- * noise: WHITE of the von Neumann ratio, which is 2 of white noise.  In one of 1000
- * series of noise or of a gamma process of nine to 17 rows, three of 1000 of a Wiener
- * process, F is larger by chance. */
-static const double FALL = 60, WHITE = 1.2;
+ * squares than one line that the ratio F is above FALL.  In one of 1000 series of noise
+ * or of a gamma process of nine to 17 rows, three of 1000 of a Wiener process, F is
+ * larger by chance. */
+static const double FALL = 60;
 enum { FEWEST = 9 };
 
 static const double CHANCE = 0.01; /* of an error of the rate */
@@ -112,50 +111,37 @@ int observed_rate_outside(const struct observed *o, double low, double high)
 }
 
 /* What is left of the squares of the gaps kept about two parallel lines, one before
- * moment k and one from it on, and of the squares of the changes between neighbours;
- * INFINITY unless the gap is lower there than at the moment before, which a halt does not
- * explain.
- */
-static double squares_about(const struct observed *o, int k, double *changes)
+ * moment k and one from it on; INFINITY unless the gap is lower there than at the moment
+ * before, which a halt does not explain. */
+static double squares_about(const struct observed *o, int k)
 {
 	struct regression part[2] = { { 0 } };
-	double slope, left, fall, passed = 0, before = 0;
+	double slope, fall;
 
 	for (int i = 0; i < o->n_kept; i++)
 		regression_add(&part[i >= k], o->kept[i].t, o->kept[i].gap);
 	slope = (part[0].xy + part[1].xy) / (part[0].xx + part[1].xx);
-	left = part[0].yy + part[1].yy - slope * (part[0].xy + part[1].xy);
 	fall = part[0].mean_y - part[1].mean_y -
 	       slope * (part[0].mean_x - part[1].mean_x);
-	*changes = 0;
-	for (int i = 0; i < o->n_kept; i++) {
-		const struct regression *p = &part[i >= k];
-		double off =
-			o->kept[i].gap - p->mean_y - slope * (o->kept[i].t - p->mean_x);
-
-		*changes += i > 0 ? (off - before) * (off - before) : 0;
-		before = off;
-		if (i > 0 && i == k)
-			passed = o->kept[i].t - o->kept[i - 1].t;
-	}
-	return k == 0 || fall > slope * passed ? left : INFINITY;
+	if (k > 0 && !(fall > slope * (o->kept[k].t - o->kept[k - 1].t)))
+		return INFINITY;
+	return part[0].yy + part[1].yy - slope * (part[0].xy + part[1].xy);
 }
 
 int observed_falls(const struct observed *o)
 {
 	int n = o->n_kept;
-	double changes, most, exact, about_one;
+	double most, exact, about_one;
 
 	if (n < FEWEST)
 		return 0;
 	most = o->kept[n - 1].gap - o->kept[0].gap;
 	exact = ROUNDED * ROUNDED * n * most * most;
-	about_one = squares_about(o, 0, &changes);
+	about_one = squares_about(o, 0);
 	for (int k = 2; k + 1 < n; k++) {
-		double left = squares_about(o, k, &changes) + exact;
+		double left = squares_about(o, k) + exact;
 
-		if (changes + 2 * exact > WHITE * left &&
-			(n - 3) * (about_one - left) > FALL * left)
+		if ((n - 3) * (about_one - left) > FALL * left)
 			return 1;
 	}
 	return 0;
