@@ -74,16 +74,6 @@ double grey_residual(const struct grey *g)
 	return g->n > 3 && sum > 0 ? sum / (g->n - 3) : 0;
 }
 
-double grey_rate_error(const struct grey *g)
-{
-	return g->fit.xx > 0 ? sqrt(grey_residual(g) / g->fit.xx) : 0;
-}
-
-double grey_level_error(const struct grey *g)
-{
-	return g->n > 1 ? sqrt(grey_residual(g) / (g->n - 1)) : 0;
-}
-
 double grey_forecast(const struct grey *g, double h, double gap)
 {
 	double rate = grey_rate(g),
@@ -95,17 +85,19 @@ double grey_forecast(const struct grey *g, double h, double gap)
 	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;
 }
 
+/* Rate and level are uncorrelated when the level is written as mean of x + a (tail - mean
+ * of u). */
 double grey_life(const struct grey_series *s, double limit, int direction, double rate_z,
 	double level_z)
 {
 	struct grey g = grey_of(s);
-	double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z,
-	       level = g.fit.mean_y + grey_level_error(&g) * level_z +
-		       rate * (g.tail - g.fit.mean_x),
-	       now, time;
+	double rate = grey_rate(&g), level, now, time;
 
 	if (g.n < GREY_ORDER_MIN)
 		return NAN;
+	rate += g.fit.xx > 0 ? sqrt(grey_residual(&g) / g.fit.xx) * rate_z : 0;
+	level = g.fit.mean_y + sqrt(grey_residual(&g) / (g.n - 1)) * level_z +
+		rate * (g.tail - g.fit.mean_x);
 	limit /= s->scale > 0 ? s->scale : 1;
 	now = grey_curve(
 		lanes_all(level), lanes_all(rate), g.span, g.span / (g.n - 1))[0];

@@ -67,10 +67,6 @@ double grey_rate(const struct grey *g);
 double grey_level(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
 double grey_residual(const struct grey *g);
-/* Standard error of a, and of c for a given a.  a and c are uncorrelated when c is
- * written as mean of x + a (tail - mean of u). */
-double grey_rate_error(const struct grey *g);
-double grey_level_error(const struct grey *g);
 
 /* Forecast of the point h steps after the newest: the mean over the last gap of these
  * steps (h = gap = 1: the next point of an evenly spaced series).  Finite for finite

@@ -49,28 +49,20 @@ double leakage_gap(const struct leakage *l, double flow)
 
 double pair_gap(const struct pair *p, enum pair_quantity quantity, double value)
 {
-	switch (quantity) {
-	case PAIR_GAP:
+	if (quantity == PAIR_GAP)
 		return value;
-	case PAIR_VOLUME:
-	case PAIR_DEBRIS:
+	if (quantity >= PAIR_VOLUME)
 		return (isnan(p->gap_new) ? 0 : p->gap_new) + value / p->area;
-	default:
-		return leakage_gap(&p->leakage, value);
-	}
+	return leakage_gap(&p->leakage, value);
 }
 
 double pair_value(const struct pair *p, enum pair_quantity quantity, double gap)
 {
-	switch (quantity) {
-	case PAIR_GAP:
+	if (quantity == PAIR_GAP)
 		return gap;
-	case PAIR_VOLUME:
-	case PAIR_DEBRIS:
+	if (quantity >= PAIR_VOLUME)
 		return (gap - (isnan(p->gap_new) ? 0 : p->gap_new)) * p->area;
-	default:
-		return leakage_flow(&p->leakage, gap);
-	}
+	return leakage_flow(&p->leakage, gap);
 }
 
 double pair_limit(const struct pair *p)

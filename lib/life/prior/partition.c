@@ -311,12 +311,10 @@ double partition_count(const struct partition *p, int class, double *mean, doubl
 
 double partition_power_mean(double p0, double y0, double p1, double y1)
 {
-	double ratio, power;
+	double ratio = log(p1 / p0), power = log(y1 / y0) / ratio + 1;
 
 	if (!(y0 > 0 && y1 > 0))
 		return (y0 + y1) / 2;
-	ratio = log(p1 / p0);
-	power = log(y1 / y0) / ratio + 1;
 	/* integral of y0 (p / p0)^(power - 1); by expm1, so that power = 0 needs no case
 	 * of its own */
 	if (fabs(power * ratio) < 1e-12)
@@ -389,9 +387,8 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 	integrate(p, parts, wear);
 }
 
-/* Draws are limited to a hundredth of the observed mean or more; otherwise the mean of 1
- * / m would not exist.  The 90 % interval of three realisations lies above exp(-2.92) of
- * it. */
+/* Of the observed mean: see partition.h.  The 90 % interval of three realisations lies
+ * above exp(-2.92) of it. */
 static const double least_draw = 0.01;
 
 /* A draw of the mean, relative to the observed one: see partition.h. */

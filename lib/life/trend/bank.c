@@ -23,8 +23,7 @@ static const double SURPRISE = 5; /* the same of a row that is held back */
 /* Length of a gap, in usual gaps, beyond which the machine may have been idle. */
 static const double HALT = 3.5;
 /* Noise, as a share of the range to the threshold, below which no coordinate describes
- * the wear: else readings without noise, or all equal, would be foretold with certainty:
- * see "Least noise" in doc/trends.md. */
+ * the wear: see "Least noise" in doc/trends.md. */
 static const double FINEST = 7.5e-4;
 /* Turn of a tangent up to which it follows to second order: the CRPS is that of exact
  * tangents, and the time of a row less by a fifth. */
@@ -36,16 +35,13 @@ static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise
  * shows in no two successive rows. */
 static const double RECENT = 0.1;
 
-/* Log weight of a Wiener process in a curved coordinate, over that of one in a straight
- * line: its wander looks like a bend for a while. */
+/* Log weight of a Wiener process in a curved coordinate of the table, over that of one in
+ * a straight line: its wander looks like a bend for a while. */
 static const double BENT = -0.4;
 
 /* Changes of regime in the past, represented by particles: hazard c, share of falls, and
- * growth in units of 1 / age, which is that of the steeper part of the changes to come
- * (passage.c), because curved coordinates stand for slow growth.  With more falls the
- * ends of wear that has just begun to accelerate are too early; rises at once and a
- * spread of the growth have no effect: see "Changes of the regime so far" in
- * doc/trends.md. */
+ * growth in units of 1 / age; curved coordinates stand for slow growth.  See "Changes of
+ * the regime so far" in doc/trends.md. */
 static const struct {
 	double hazard, falls, growth;
 } past = { 0.36, 0.25, 16 };
@@ -229,12 +225,6 @@ static double log_prior(const struct bank *b, const struct trend *tr)
 		       (PACE * PACE + usual[LINE_VV] * tr->sum / freedom_of(b, tr));
 }
 
-/* 1: a curved coordinate of the table. */
-static int is_bent(const struct bank_shape *s)
-{
-	return s->n == 0 && s->family != BANK_LINEAR;
-}
-
 /* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
  * given a wrong model.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
@@ -244,10 +234,12 @@ static void weigh(struct bank *b)
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
+		const struct kind *kind = &kinds[tr->kind];
+		const struct bank_shape *s = shape_of(b, tr->shape);
 
-		tr->weight = log_prior(b, tr) + kinds[tr->kind].log_prior + tr->offset +
+		tr->weight = log_prior(b, tr) + kind->log_prior + tr->offset +
 			     share * tr->score;
-		if (wanders(tr) && is_bent(shape_of(b, tr->shape)))
+		if (kind->wander > 0 && s->n == 0 && s->family != BANK_LINEAR)
 			tr->weight += BENT;
 		if (isfinite(tr->weight))
 			top = fmax(top, tr->weight);
@@ -781,12 +773,13 @@ double bank_weight(const struct bank *b, enum bank_family family)
 {
 	double sum = 0;
 
-	for (int i = 0; i < b->trends; i++)
-		if (family == BANK_ALL ? i >= b->fixed
-				       : i < b->fixed &&
-						 shape_of(b, b->trend[i].shape)->family ==
-							 family)
+	for (int i = 0; i < b->trends; i++) {
+		int changed = i >= b->fixed;
+
+		if (family ==
+			(changed ? BANK_ALL : shape_of(b, b->trend[i].shape)->family))
 			sum += b->trend[i].weight;
+	}
 	return sum;
 }
 

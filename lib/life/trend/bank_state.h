@@ -189,12 +189,6 @@ static inline double freedom_of(const struct bank *b, const struct trend *tr)
 	return b->freedom[tr->kind];
 }
 
-/* 1: the damage is a Wiener process. */
-static inline int wanders(const struct trend *tr)
-{
-	return kinds[tr->kind].wander > 0;
-}
-
 /* Factor by which the rate has grown from the onset to an age. */
 static inline double grown(const struct trend *tr, double age)
 {

@@ -35,13 +35,10 @@ static const double GROWTH_SD = 1.4; /* of its logarithm */
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
 
-/* The wear may follow another curve than the coordinate: beyond the damage that has been
- * reached, and since the rows from which the rate is known.  This stands for all curves
- * near it, and in quiet data it alone has the weight, though others may fit as well.
- * Where the rate of the damage changes by e as an average over this way, the logarithm of
- * the time has the sd STRAY, and its median is LEAN less: most wear bends more than its
- * coordinate, because straight coordinates have more weight.  Both were swept: see
- * "Stray and lean" in doc/trends.md. */
+/* The wear may follow another curve near the coordinate: beyond the damage that has been
+ * reached, and since the rows from which the rate is known.  Where the rate of the damage
+ * changes by e as an average over this way, the logarithm of the time has the sd STRAY,
+ * and its median is LEAN less: see "Stray and lean" in doc/trends.md. */
 static const double STRAY = 0.18, LEAN = 0.05;
 
 struct bank_chances {
