@@ -45,9 +45,8 @@ struct partition {
 	long first_step;
 	int sizes;
 	struct class class[PARTITION_CLASSES_MAX];
-	int order[PARTITION_CLASSES_MAX]; /* classes by pressure once closed */
+	int order[PARTITION_CLASSES_MAX]; /* classes by pressure */
 	int nclasses, culprit;
-	long culprit_realisation;
 	long steps;
 };
 
@@ -144,9 +143,13 @@ static enum num_status take_history(
 int partition_class(struct partition *p, int sparse, double pressure, double area)
 {
 	struct class *c = &p->class[p->nclasses];
+	int k = p->nclasses;
 
 	if (p->nclasses == PARTITION_CLASSES_MAX)
 		return -1;
+	for (; k > 0 && p->class[p->order[k - 1]].pressure > pressure; k--)
+		p->order[k] = p->order[k - 1];
+	p->order[k] = p->nclasses;
 	*c = (struct class){ .owner = p,
 		.sparse = sparse,
 		.pressure = pressure,
@@ -158,9 +161,8 @@ int partition_class(struct partition *p, int sparse, double pressure, double are
 }
 
 static enum partition_status reading(
-	struct partition *p, struct class *c, enum realisations_status status)
+	const struct class *c, enum realisations_status status)
 {
-	p->culprit_realisation = realisations_culprit(c->reader);
 	if (status == REALISATIONS_AGAIN)
 		return PARTITION_APART;
 	if (status == REALISATIONS_STOP && c->twice)
@@ -183,7 +185,7 @@ enum partition_status partition_fragment(
 	p->culprit = class;
 	if (row->step > p->steps)
 		p->steps = row->step;
-	return reading(p, c, realisations_add(c->reader, row));
+	return reading(c, realisations_add(c->reader, row));
 }
 
 /* Moments of the rows read.  Realisations and steps that are missing from a particle
@@ -219,18 +221,6 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	c->groups = (long)fmin(c->volume.n, GROUPS);
 	c->first_group = c->sparse ? c->lowest % GROUPS : 0;
 	return PARTITION_OK;
-}
-
-static void sort_classes(struct partition *p)
-{
-	for (int i = 0; i < p->nclasses; i++) {
-		int k = i;
-
-		for (; k > 0 && p->class[p->order[k - 1]].pressure > p->class[i].pressure;
-			k--)
-			p->order[k] = p->order[k - 1];
-		p->order[k] = i;
-	}
 }
 
 /* Own areas and the linear zone. */
@@ -270,20 +260,15 @@ enum partition_status partition_close(
 	p->fragment_area = fragment_area;
 	for (int c = 0; c < p->nclasses; c++) {
 		p->culprit = c;
-		status = reading(p, &p->class[c], realisations_end(p->class[c].reader));
-		if (status != PARTITION_OK)
-			return status;
-	}
-	for (int c = 0; c < p->nclasses; c++) {
-		p->culprit = c;
-		status = sum_up(p, &p->class[c]);
+		status = reading(&p->class[c], realisations_end(p->class[c].reader));
+		if (status == PARTITION_OK)
+			status = sum_up(p, &p->class[c]);
 		if (status == PARTITION_OK && p->nclasses > 1 &&
 			!(p->class[c].pressure > 0))
 			status = PARTITION_PRESSURE;
 		if (status != PARTITION_OK)
 			return status;
 	}
-	sort_classes(p);
 	for (int k = 1; k < p->nclasses; k++) {
 		p->culprit = p->order[k];
 		if (p->class[p->culprit].pressure == p->class[p->order[k - 1]].pressure)
@@ -299,7 +284,7 @@ int partition_culprit(const struct partition *p)
 
 long partition_realisation(const struct partition *p)
 {
-	return p->culprit_realisation;
+	return realisations_culprit(p->class[p->culprit].reader);
 }
 
 double partition_count(const struct partition *p, int class, double *mean, double *error)
@@ -387,23 +372,19 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 	integrate(p, parts, wear);
 }
 
-/* Of the observed mean: see partition.h.  The 90 % interval of three realisations lies
- * above exp(-2.92) of it. */
-static const double least_draw = 0.01;
-
 /* A draw of the mean, relative to the observed one: see partition.h. */
 static double draw_mean(const struct class *c, gsl_rng *rng)
 {
-	const double tail = 4.7, square = 1.2;
+	/* the 90 % interval of three realisations lies above exp(-2.92) */
+	const double tail = 4.7, square = 1.2, least = 0.01;
 	double k = c->volume.n, t, more;
 
 	if (!(c->error > 0))
 		return 1;
 	t = gsl_ran_tdist(rng, k - 1) * c->error;
 	more = t < 0 ? square * t * t - tail * c->skewness * t / sqrt(c->error * k) : 0;
-	/* With few realisations t may be of any size: no infinite rates, and see
-	 * least_draw. */
-	return fmax(exp(fmin(more - t, 200)), least_draw);
+	/* With few realisations t may be of any size: no infinite rates. */
+	return fmax(exp(fmin(more - t, 200)), least);
 }
 
 /* Resamples the groups with replacement. */
