@@ -123,7 +123,7 @@ static double squares_about(const struct observed *o, int k)
 	slope = (part[0].xy + part[1].xy) / (part[0].xx + part[1].xx);
 	fall = part[0].mean_y - part[1].mean_y -
 	       slope * (part[0].mean_x - part[1].mean_x);
-	if (k > 0 && !(fall > slope * (o->kept[k].t - o->kept[k - 1].t)))
+	if (!(fall > slope * (o->kept[k].t - o->kept[k - 1].t)))
 		return INFINITY;
 	return part[0].yy + part[1].yy - slope * (part[0].xy + part[1].xy);
 }
@@ -132,12 +132,15 @@ int observed_falls(const struct observed *o)
 {
 	int n = o->n_kept;
 	double most, exact, about_one;
+	struct regression one = { 0 };
 
 	if (n < FEWEST)
 		return 0;
 	most = o->kept[n - 1].gap - o->kept[0].gap;
 	exact = ROUNDED * ROUNDED * n * most * most;
-	about_one = squares_about(o, 0);
+	for (int i = 0; i < n; i++)
+		regression_add(&one, o->kept[i].t, o->kept[i].gap);
+	about_one = one.yy - regression_slope(&one) * one.xy;
 	for (int k = 2; k + 1 < n; k++) {
 		double left = squares_about(o, k) + exact;
 
