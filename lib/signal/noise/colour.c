@@ -2,6 +2,7 @@
 #include "signal/noise/colour.h"
 #include "num/cholesky.h"
 #include "num/dot.h"
+#include "num/lesser.h"
 #include "num/periodogram.h"
 #include "num/sigmas.h"
 #include "signal/noise/robust.h"
@@ -123,27 +124,64 @@ static double level(const struct whitening *w, double *power, size_t segment)
 	return robust_median(power + from, to - from + 1);
 }
 
+/* Noise of both channels as segments of one length show it. */
+struct quiet {
+	size_t segment;
+	double power[2][COLOUR_BINS];
+	int found; /* segments that hold only noise */
+};
+
+/* 1 if the spectra of longer segments exceed those of shorter ones as segments with
+ * pulses exceed those of noise: hardly any longer segment was without pulses. */
+static int holds_pulses(const struct quiet *longer, struct quiet *shorter)
+{
+	const size_t ratio = longer->segment / shorter->segment;
+	double mean[2 * COLOUR_BINS];
+	double *const spectrum[2] = { shorter->power[0], shorter->power[1] };
+
+	for (int c = 0; c < 2; c++)
+		for (size_t k = 1; k <= shorter->segment / 2; k++) {
+			size_t from = k * ratio - ratio / 2;
+			size_t to = lesser(k * ratio + ratio / 2, longer->segment / 2);
+
+			mean[(size_t)c * COLOUR_BINS + k] =
+				mean_of(longer->power[c] + from, to - from + 1);
+		}
+	return !is_noise(mean, COLOUR_BINS, spectrum, shorter->segment / 2);
+}
+
+/* The noise in the longest segments of at least so many samples of which FEWEST hold only
+ * noise. */
+static enum num_status find_quiet(
+	const double *y1, const double *y2, size_t n, double least, struct quiet *quiet)
+{
+	enum { SHORTEST = 64 };
+	enum num_status status = NUM_OK;
+
+	quiet->found = 0;
+	for (size_t segment = LONGEST; status == NUM_OK && segment >= SHORTEST &&
+				       (segment == LONGEST || (double)segment >= least);
+		segment /= 2) {
+		struct quiet now = { .segment = segment };
+
+		status = colour_spectrum(
+			y1, y2, n, segment, now.power[0], now.power[1], &now.found);
+		if (status == NUM_OK &&
+			(quiet->found < FEWEST ||
+				(now.found >= FEWEST && holds_pulses(quiet, &now))))
+			*quiet = now;
+	}
+	return status;
+}
+
 enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	const struct whitening *w, double noise[2])
 {
-	double least = 4 / (w->high - w->low);
-	double *power = malloc((LONGEST + 2) * sizeof *power);
-	enum num_status status = power ? NUM_OK : NUM_MEMORY;
-	int segments = 0;
+	struct quiet quiet;
+	enum num_status status = find_quiet(y1, y2, n, 4 / (w->high - w->low), &quiet);
 
-	for (size_t segment = LONGEST; status == NUM_OK && segments < FEWEST;
-		segment /= 2) {
-		double *other = power + segment / 2 + 1;
-
-		if (segment < 64 || (segment < LONGEST && (double)segment < least))
-			break;
-		status = colour_spectrum(y1, y2, n, segment, power, other, &segments);
-		if (status != NUM_OK)
-			break;
-		noise[0] = sqrt(level(w, power, segment));
-		noise[1] = sqrt(level(w, other, segment));
-	}
-	free(power);
+	for (int c = 0; c < 2 && status == NUM_OK; c++)
+		noise[c] = sqrt(level(w, quiet.power[c], quiet.segment));
 	return status;
 }
 
@@ -174,20 +212,23 @@ static enum num_status positive_spectrum(double *r, size_t bins)
 	return status;
 }
 
-/* Removes the effect of the window from a mean periodogram: the autocorrelation is
- * divided by that of the window, and truncated smoothly at half its length. */
+/* Removes the effect of the window from a mean periodogram of the first bins, and makes
+ * it one of COLOUR_BINS: the autocorrelation is divided by that of the window, and
+ * truncated smoothly at half its length. */
 static enum num_status sharpen(double *power, size_t bins)
 {
 	size_t last = bins - 1, points = 2 * last;
 	enum num_status status = fft_even(power, bins);
 
-	for (size_t k = 0; k <= last; k++) {
+	for (size_t k = 0; k < COLOUR_BINS; k++) {
 		double u = 2 * (double)k / (double)last - 1;
 		double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
 
-		power[k] *= keep / window_autocorrelation(points, k, 0) / (double)points;
+		power[k] *= k >= last ? 0
+				      : keep / window_autocorrelation(points, k, 0) /
+						(double)points;
 	}
-	return status == NUM_OK ? positive_spectrum(power, bins) : status;
+	return status == NUM_OK ? positive_spectrum(power, COLOUR_BINS) : status;
 }
 
 /* Bins of which drift is estimated: Hann's window spreads the level of the record over
@@ -265,26 +306,26 @@ static double find_drift(const double *power, int segments)
 enum num_status colour_power(
 	const double *y1, const double *y2, size_t n, struct colour *colour)
 {
-	double other[COLOUR_BINS], *power = colour->power;
-	int segments;
-	enum num_status status =
-		colour_spectrum(y1, y2, n, LONGEST, power, other, &segments);
+	struct quiet quiet;
+	double *power = colour->power;
+	enum num_status status = find_quiet(y1, y2, n, 0, &quiet);
 
 	colour->drift = 0;
 	if (status != NUM_OK)
 		return status;
 	for (int k = 0; k < COLOUR_BINS; k++)
-		power[k] = 0.5 * (power[k] + other[k]);
-	if (segments < FEWEST)
+		power[k] = 0.5 * (quiet.power[0][k] + quiet.power[1][k]);
+	if (quiet.found < FEWEST)
 		return NUM_DOMAIN;
-	colour->drift = find_drift(power, segments);
+	if (quiet.segment == LONGEST)
+		colour->drift = find_drift(power, quiet.found);
 	if (colour->drift > 0) {
 		for (int k = DRIFT_FIRST; k < COLOUR_BINS; k++)
 			power[k] /= 1 + colour->drift * walk(k);
 		for (int k = 0; k < DRIFT_FIRST; k++)
 			power[k] = power[DRIFT_FIRST];
 	}
-	return sharpen(power, COLOUR_BINS);
+	return sharpen(power, quiet.segment / 2 + 1);
 }
 
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,

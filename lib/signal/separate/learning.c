@@ -42,7 +42,7 @@ static void follow_noise(struct separate *s, size_t n)
 		0.5 * (double)n, (double)n - 2 * (double)c->tone_hop - c->whitening.edge);
 
 	block = block < FOLLOWING_BLOCK ? block : FOLLOWING_BLOCK;
-	if (block < SHORTEST || c->duration < FOLLOWED || c->whitening.tap)
+	if (block < SHORTEST || c->duration < FOLLOWED)
 		return;
 	for (int k = 0; k < s->channels; k++)
 		buffer_follow(&s->buffer[k], s->done, block, n ? 0 : s->kept.level[k],
