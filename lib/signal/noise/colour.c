@@ -150,15 +150,21 @@ static int holds_pulses(const struct quiet *longer, struct quiet *shorter)
 	return !is_noise(mean, COLOUR_BINS, spectrum, shorter->segment / 2);
 }
 
-/* The noise in the longest segments of at least so many samples of which FEWEST hold only
- * noise. */
+/* 1 if the segments have as many samples as FEWEST of LONGEST. */
+static int is_enough(const struct quiet *quiet)
+{
+	return (size_t)quiet->found * quiet->segment >= (size_t)FEWEST * LONGEST;
+}
+
+/* The noise in the longest segments, of at least so many samples, of which FEWEST hold
+ * only noise, and not pulses instead, as enough shorter ones show. */
 static enum num_status find_quiet(
 	const double *y1, const double *y2, size_t n, double least, struct quiet *quiet)
 {
 	enum { SHORTEST = 64 };
 	enum num_status status = NUM_OK;
 
-	quiet->found = 0;
+	*quiet = (struct quiet){ .segment = LONGEST };
 	for (size_t segment = LONGEST; status == NUM_OK && segment >= SHORTEST &&
 				       (segment == LONGEST || (double)segment >= least);
 		segment /= 2) {
@@ -168,7 +174,7 @@ static enum num_status find_quiet(
 			y1, y2, n, segment, now.power[0], now.power[1], &now.found);
 		if (status == NUM_OK &&
 			(quiet->found < FEWEST ||
-				(now.found >= FEWEST && holds_pulses(quiet, &now))))
+				(is_enough(&now) && holds_pulses(quiet, &now))))
 			*quiet = now;
 	}
 	return status;
@@ -315,7 +321,7 @@ enum num_status colour_power(
 		return status;
 	for (int k = 0; k < COLOUR_BINS; k++)
 		power[k] = 0.5 * (quiet.power[0][k] + quiet.power[1][k]);
-	if (quiet.found < FEWEST)
+	if (!is_enough(&quiet))
 		return NUM_DOMAIN;
 	if (quiet.segment == LONGEST)
 		colour->drift = find_drift(power, quiet.found);
