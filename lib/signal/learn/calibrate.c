@@ -1,5 +1,6 @@
 /* calibrate.c - see calibration.h */
 #include "num/dot.h"
+#include "signal/learn/bubbles.h"
 #include "signal/learn/calibration.h"
 #include "signal/learn/crosstalk.h"
 #include "signal/learn/find_lines.h"
@@ -455,9 +456,9 @@ static enum separate_status without_crosstalk(
 }
 
 /* The range of velocities and the crosstalk, from the channels without their lines, which
- * look like pulses. */
+ * look like pulses, and into seen both channels without bubbles. */
 static enum separate_status survey(
-	const struct look *look, struct velocities *v, double crosstalk[2])
+	const struct look *look, struct velocities *v, double crosstalk[2], double *seen)
 {
 	const size_t n = look->n;
 	double *y = malloc((4 * n + 1) * sizeof *y);
@@ -477,6 +478,11 @@ static enum separate_status survey(
 			marks_find(y + n, n, y + 2 * n, &m[1]) != NUM_OK ||
 			velocities_find(m, n, v) != NUM_OK ||
 			crosstalk_find(x, look->par->hidden, n, m, crosstalk) != NUM_OK))
+		status = SEPARATE_MEMORY;
+	memcpy(seen, look->x[0], n * sizeof *seen);
+	memcpy(seen + n, look->x[1], n * sizeof *seen);
+	if (status == SEPARATE_OK &&
+		bubbles_remove(v, WIDER, m, y, n, y + 2 * n, seen) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	marks_clear(&m[0]);
 	marks_clear(&m[1]);
@@ -512,26 +518,34 @@ static enum separate_status calibrate_as(const struct calibrate_par *par, int eq
 {
 	struct effort effort = { 0 };
 	struct look look = { .par = par, .x = { x1, x2 }, .n = n, .effort = &effort };
-	struct look clean = look;
+	struct look clean;
 	struct velocities v = { 0 };
 	double crosstalk[2] = { 0 }, *x = NULL;
-	enum separate_status status;
+	double *seen = malloc((2 * n + 1) * sizeof *seen);
+	enum separate_status status = SEPARATE_MEMORY;
 
 	memset(c, 0, sizeof *c);
-	status = survey(&look, &v, crosstalk);
+	if (seen)
+		status = survey(&look, &v, crosstalk, seen);
 	/* A filter that is to be undone has given the pulses lobes, which look like
 	 * slower pulses. */
 	if (par->filter || !isnan(par->lag) || !isnan(par->spread) ||
-		!isnan(par->duration))
+		!isnan(par->duration)) {
 		v = (struct velocities){ 0 };
+	} else {
+		look.x[0] = seen;
+		look.x[1] = seen + n;
+	}
+	clean = look;
 	if (status == SEPARATE_OK && v.opposite && !equal)
-		return SEPARATE_OPPOSITE;
+		status = SEPARATE_OPPOSITE;
 	if (status == SEPARATE_OK && is_mixed(crosstalk))
 		status = unmix(&look, crosstalk, &x, &clean);
 	if (status == SEPARATE_OK)
 		status = find_flow(&clean, &v, c);
 	if (status == SEPARATE_OK)
 		status = without_crosstalk(&look, crosstalk, &x, c);
+	free(seen);
 	free(x);
 	c->attempts = effort.attempts;
 	c->work = effort.work;

@@ -21,13 +21,20 @@ static const double LONGEST = 0.05;
  * lobes look like pulses at half a duration from it. */
 static const double WITHIN = 0.75;
 
-/* Products of the sine pulse of so many points, of energy 1, with z[0 .. m). */
-static void filter(const double *z, size_t m, int points, double *out)
+/* Products of the pulse of so many points, of energy 1, with z[0 .. m): the period of a
+ * sine, or one lobe. */
+static void filter(const double *z, size_t m, int lobe, int points, double *out)
 {
-	double p[2 * POINTS + 1], scale = sqrt(2.0 / points);
+	double p[2 * POINTS + 1], energy = 0;
 
+	for (int k = 0; k < points; k++) {
+		double s = (k + 0.5) / points;
+
+		p[k] = lobe ? marks_lobe(s - 0.5) : sin(2 * M_PI * s);
+		energy += p[k] * p[k];
+	}
 	for (int k = 0; k < points; k++)
-		p[k] = scale * sin(2 * M_PI * (k + 0.5) / points);
+		p[k] /= sqrt(energy);
 	for (size_t i = 0; i < m; i++)
 		out[i] = 0;
 	for (size_t i = 0; i + (size_t)points <= m; i++)
@@ -42,7 +49,9 @@ static int by_value(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m)
+/* Pulses of either kind with durations from least to most. */
+static enum num_status find(const double *x, size_t n, int lobe, double least,
+	double most, double *work, struct marks *m)
 {
 	double noise = robust_noise(x, NULL, n, work), *z = work, *out = work + n;
 	size_t kept = 0;
@@ -50,7 +59,7 @@ enum num_status marks_find(const double *x, size_t n, double *work, struct marks
 	*m = (struct marks){ .noise = noise };
 	if (!(noise > 0))
 		return NUM_OK;
-	for (double T = SHAPE_SHORTEST; T < LONGEST * (double)n; T *= exp(MARKS_STEP)) {
+	for (double T = least; T < most; T *= exp(MARKS_STEP)) {
 		size_t q = T > 2 * POINTS ? (size_t)(T / POINTS) : 1, count = n / q;
 		int points = (int)(T / (double)q + 0.5);
 
@@ -59,7 +68,7 @@ enum num_status marks_find(const double *x, size_t n, double *work, struct marks
 			for (size_t k = 0; k < q; k++)
 				z[i] += x[i * q + k] / (noise * sqrt((double)q));
 		}
-		filter(z, count, points, out);
+		filter(z, count, lobe, points, out);
 		for (size_t i = 1; i + 1 < count; i++) {
 			double a = fabs(out[i - 1]), b = fabs(out[i]),
 			       c = fabs(out[i + 1]), at;
@@ -87,6 +96,17 @@ enum num_status marks_find(const double *x, size_t n, double *work, struct marks
 	}
 	m->count = kept;
 	return NUM_OK;
+}
+
+enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m)
+{
+	return find(x, n, 0, SHAPE_SHORTEST, LONGEST * (double)n, work, m);
+}
+
+enum num_status marks_find_lobes(const double *x, size_t n, double least, double most,
+	double *work, struct marks *m)
+{
+	return find(x, n, 1, least, most, work, m);
 }
 
 void marks_clear(struct marks *m)

@@ -7,6 +7,7 @@
 #define SIGNAL_MARKS_H
 
 #include "num/status.h"
+#include <math.h>
 #include <stddef.h>
 
 /* Step of the logarithm of the durations that are compared. */
@@ -27,6 +28,16 @@ struct marks {
 /* Pulses of x[0 .. n).  work holds 2 n values.  Free *m with marks_clear(), also on
  * NUM_MEMORY. */
 enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m);
+
+/* Lobes of one sign, of durations from least to most, of x without its median. */
+enum num_status marks_find_lobes(const double *x, size_t n, double least, double most,
+	double *work, struct marks *m);
+/* Level of such a lobe at s durations from its middle, where it is 1. */
+static inline double marks_lobe(double s)
+{
+	return fabs(s) < 0.5 ? 0.5 + 0.5 * cos(2 * M_PI * s) : 0;
+}
+
 void marks_clear(struct marks *m);
 
 #endif
