@@ -25,10 +25,17 @@ enum { PULSES = 4, ROUNDS = 3 };
 /* Share of its energy that others must leave of a wave beside which it is fitted. */
 static const double LITTLE = 0.02;
 
-/* Error of the pulses of the fits, as a share of the energy of what they describe. */
+/* Error of the pulses of the fits, as a share of the energy of what they describe.  At
+ * the levels of evidence that no lobe of 276 records beside bubbles reached, 382, 408,
+ * 396, 369 and 323 of 617 bubbles were told with 0, 0.003, 0.01, 0.03 and 0.1 (in time
+ * steps half as long). */
 static const double SHAPE_ERROR = 0.003;
 
-/* Logarithm of the least ratio of what particles leave and what a bubble does. */
+/* Logarithm of the least ratio of what particles leave and what a bubble does, mean of
+ * both channels.  With 1, 1.5 and 2, 466, 448 and 423 of 612 bubbles of 67 records are
+ * taken out, with 78, 23 and 7 other pulses, and 96, 27 and 3 pulses of 176 records
+ * without bubbles: 52 of them of groups, the others in laminar and turbulent flow, behind
+ * high-passes and with crosstalk. */
 static const double CLEARLY = 2;
 
 struct channel {
@@ -193,7 +200,7 @@ static double evidence(const struct channel *c, struct wave *bubble)
 	double error = SHAPE_ERROR * dot(x, x, (size_t)n), enough, rest;
 
 	/* however well the bubble describes them */
-	enough = (exp(CLEARLY) - 1) * error;
+	enough = expm1(CLEARLY) * error;
 	rest = rest_of(c, x, n, enough, NULL);
 	if (rest <= enough)
 		return 0;
@@ -238,7 +245,7 @@ static enum num_status prepare(const struct velocities *v, double factor,
 {
 	const double mean = sqrt(v->fast * v->slow);
 	size_t q = mean > POINTS ? (size_t)(mean / POINTS) : 1;
-	double *y = malloc((n + 1) * sizeof *y), middle;
+	double *y = malloc((n + 1) * sizeof *y);
 	enum num_status status = NUM_MEMORY;
 
 	*c = (struct channel){ .samples = q,
@@ -248,6 +255,8 @@ static enum num_status prepare(const struct velocities *v, double factor,
 		.longest = v->slow / (double)q * exp(MARKS_STEP / 2) };
 	c->z = calloc(c->n + 1, sizeof *c->z);
 	if (y && c->z) {
+		double middle;
+
 		memcpy(work, x, n * sizeof *x);
 		middle = robust_median(work, n);
 		for (size_t i = 0; i < n; i++)
