@@ -297,6 +297,39 @@ static void test_colour(void)
 	whitening_clear(&w);
 }
 
+/* Low-passed noise with a pulse in each half of a segment: the spectrum is that between
+ * the pulses. */
+static void test_crowded_colour(void)
+{
+	enum { APART = 400, LONG = 57 };
+	struct colour noise;
+	double a = 0.7, most = 0, least = INFINITY;
+
+	for (unsigned c = 0; c < 2; c++) {
+		make_noise(y[c], N, 1, c);
+		colour(y[c], N, a);
+		for (int i = 0; i < N; i++) {
+			double place = (double)((i + 100 * (int)c) % APART) / LONG;
+
+			y[c][i] += place < 1 ? 30 * sin(acos(-1) * place) : 0;
+		}
+	}
+	ok(colour_power(y[0], y[1], N, &noise) == NUM_OK,
+		"noise is measured between frequent pulses");
+	for (int k = 0; k < COLOUR_BINS; k++) {
+		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
+
+		most = tap_max(most, noise.power[k] / want);
+		least = fmin(least, noise.power[k] / want);
+	}
+	/* Where only the end of a pulse is within a segment, its power adds to that of
+	 * the noise, by less than would tell; the scatter is 4 %.  With the spectrum of
+	 * the pulses the ratio is up to 700. */
+	ok(most < 1.5 && least > 0.8,
+		"its power is not that of the pulses (%.2f to %.2f of the noise)", least,
+		most);
+}
+
 /* Adds a random walk to x, in steps of standard deviation step. */
 static void add_walk(double *x, size_t n, double step, unsigned seed)
 {
@@ -398,6 +431,7 @@ int main(void)
 			segments == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();
+	test_crowded_colour();
 	test_no_drift(0.01);
 	test_no_drift(0.02);
 	test_no_drift(0.05);
