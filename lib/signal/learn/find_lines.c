@@ -124,7 +124,7 @@ static enum separate_status choose_hop(
 
 /* Finds lines of y1, y2[0 .. n), at most TONES_MAX with those of c, that are none of
  * these. */
-static enum num_status add_tones(const double *y1, const double *y2, size_t n, int side,
+static enum num_status add_tones(const double *y1, const double *y2, size_t n, int again,
 	struct calibration *c, int *added)
 {
 	enum { ENOUGH = 16384 };
@@ -132,7 +132,7 @@ static enum num_status add_tones(const double *y1, const double *y2, size_t n, i
 	double omega[TONES_MAX];
 	int found, count = 0;
 	enum num_status status =
-		tones_find(y1, y2, n, side, TONES_MAX - c->tones, omega, &found);
+		tones_find(y1, y2, n, again, TONES_MAX - c->tones, omega, &found);
 
 	for (int k = 0; k < found; k++) {
 		int known = 0;
@@ -151,10 +151,6 @@ static enum num_status add_tones(const double *y1, const double *y2, size_t n, i
 	sort_numbers(c->omega, (size_t)c->tones);
 	return status;
 }
-
-/* Bins on either side that a line has to exceed which shows only without others: what a
- * drifting baseline leaves falls steeply from bin to bin. */
-enum { NEAR_SIDE = 12 };
 
 /* Frequencies at the beginning of y[0 .. n) of tones that have frequencies omega at its
  * end. */
@@ -194,7 +190,7 @@ static enum num_status add_sweep(
 			int found;
 
 			status = tones_find(
-				y1 + k * m, y2 + k * m, m, NEAR_SIDE, 1, &line, &found);
+				y1 + k * m, y2 + k * m, m, 1, 1, &line, &found);
 			if (status == NUM_OK)
 				status = tones_confirm(y1 + k * m, y2 + k * m, m,
 					1 - calibration_lost(c), &found, &line);
@@ -244,13 +240,13 @@ static enum separate_status settle_tones(
 /* Finds lines in rest, 2 n samples, of the record without the tones of c.  Lines that
  * merge with those known are none, unless the level falls: they would be found again. */
 static enum separate_status search_lines(const struct record *rec, const double *rest,
-	int side, struct calibration *c, double *level, int *added)
+	int again, struct calibration *c, double *level, int *added)
 {
 	const struct calibration before = *c;
 	double lower;
 	enum separate_status status = SEPARATE_MEMORY;
 
-	if (add_tones(rest, rest + rec->n, rec->n, side, c, added) == NUM_OK)
+	if (add_tones(rest, rest + rec->n, rec->n, again, c, added) == NUM_OK)
 		status = *added ? choose_hop(rec, c, &lower) : SEPARATE_OK;
 	if (status == SEPARATE_OK && *added)
 		status = settle_tones(rec, c, &lower);
@@ -287,13 +283,12 @@ static enum separate_status search_sweep(const struct record *rec, const double 
 	return status;
 }
 
-/* Finds lines, and again in what they leave, where pulses are clipped lower: the limit is
- * a few times the usual sample, which includes the lines; then sweeps. */
+/* Finds lines, and again in what they leave, then sweeps. */
 static enum separate_status search_tones(const struct record *rec, struct calibration *c)
 {
 	size_t n = rec->n;
 	double *rest = malloc(2 * n * sizeof *rest), level = INFINITY;
-	int added = 1, side = TONES_SIDE;
+	int added = 1, again = 0;
 	enum separate_status status = rest ? SEPARATE_OK : SEPARATE_MEMORY;
 
 	while (status == SEPARATE_OK && added > 0) {
@@ -307,10 +302,10 @@ static enum separate_status search_tones(const struct record *rec, struct calibr
 					c, rest + (size_t)k * n, n, &track);
 		}
 		if (status == SEPARATE_OK)
-			status = search_lines(rec, rest, side, c, &level, &added);
+			status = search_lines(rec, rest, again, c, &level, &added);
 		if (status == SEPARATE_OK && !added)
 			status = search_sweep(rec, rest, c, &level, &added);
-		side = NEAR_SIDE;
+		again = 1;
 	}
 	free(rest);
 	return status;

@@ -11,7 +11,6 @@
 #include <string.h>
 
 enum {
-	CLIP = 3,
 	TERMS_MAX = 2 * TONES_MAX + 1,
 	RUN = 64 /* samples for each sine and cosine that is computed */
 };
@@ -27,15 +26,21 @@ static int by_power(const void *x, const void *y)
 	return p->power > q->power ? -1 : p->power < q->power;
 }
 
-/* Pulses are clipped to a few times the usual sample, which includes the lines:
- * unclipped, the spectrum of rare strong pulses would hide lines. */
-static void add_clipped(struct periodogram *p, const double *y, size_t n, double *power)
+/* Times the usual sample, which includes the lines, to which pulses are clipped:
+ * unclipped, the spectrum of rare strong pulses would hide lines.  What strong lines
+ * leave has none that clipping would give harmonics: at the usual sample five sixths of
+ * the information on a weak line in white noise are left, and a ninth of the energy of
+ * pulses. */
+static const double CLIP = 3, CLIP_AGAIN = 1;
+
+static void add_clipped(
+	struct periodogram *p, const double *y, size_t n, double clip, double *power)
 {
 	double mean = mean_of(y, n), limit, *work = p->x;
 
 	for (size_t i = 0; i < n; i++)
 		work[i] = fabs(y[i] - mean);
-	limit = CLIP * robust_median(work, n);
+	limit = clip * robust_median(work, n);
 	if (limit <= 0)
 		limit = INFINITY; /* silence except for pulses */
 	for (size_t i = 0; i < n; i++)
@@ -44,11 +49,15 @@ static void add_clipped(struct periodogram *p, const double *y, size_t n, double
 	periodogram_add(p, 1, power, n / 2 + 1);
 }
 
+/* Bins on either side that a line has to exceed; fewer if it shows only without others:
+ * what a drifting baseline leaves falls steeply from bin to bin. */
+enum { SIDE = 64, SIDE_AGAIN = 12 };
+
 static int pick_lines(const double *power, size_t n, size_t side, int max, double *omega)
 {
 	enum { KEEP = 256 };
 	struct line line[KEEP] = { { 0, 0 } };
-	double around[2 * TONES_SIDE];
+	double around[2 * SIDE];
 	int count = 0;
 
 	for (size_t k = 3; k + 3 <= n / 2; k++) {
@@ -81,7 +90,7 @@ static int pick_lines(const double *power, size_t n, size_t side, int max, doubl
 	return count;
 }
 
-enum num_status tones_find(const double *y1, const double *y2, size_t n, int side,
+enum num_status tones_find(const double *y1, const double *y2, size_t n, int again,
 	int max, double *omega, int *tones)
 {
 	struct periodogram *p;
@@ -97,10 +106,12 @@ enum num_status tones_find(const double *y1, const double *y2, size_t n, int sid
 	power = calloc(n / 2 + 1, sizeof *power);
 	status = p && power ? NUM_OK : NUM_MEMORY;
 	if (status == NUM_OK) {
-		add_clipped(p, y1, n, power);
-		add_clipped(p, y2, n, power);
-		*tones = pick_lines(
-			power, n, (size_t)side, max > TONES_MAX ? TONES_MAX : max, omega);
+		double clip = again ? CLIP_AGAIN : CLIP;
+
+		add_clipped(p, y1, n, clip, power);
+		add_clipped(p, y2, n, clip, power);
+		*tones = pick_lines(power, n, again ? SIDE_AGAIN : SIDE,
+			max > TONES_MAX ? TONES_MAX : max, omega);
 	}
 	periodogram_free(p);
 	free(power);
