@@ -383,6 +383,10 @@ static double unlikely(
 	return sum;
 }
 
+/* Largest scatter: the deviations are linear in what a pulse has of its own, and three
+ * standard deviations of this are then a factor of two. */
+static const double MOST = M_LN2 / 3;
+
 double joint_scatter(int own, const struct joint_deviation *w, size_t n, double certain)
 {
 	enum { ROUNDS = 24 };
@@ -404,7 +408,9 @@ double joint_scatter(int own, const struct joint_deviation *w, size_t n, double 
 		else
 			hi = middle;
 	}
-	return none - unlikely(own, w, n, hi, &slope) > certain ? sqrt(hi) : 0;
+	return sqrt(hi) < MOST && none - unlikely(own, w, n, hi, &slope) > certain
+		       ? sqrt(hi)
+		       : 0;
 }
 
 /* What a pulse leaves by three standard deviations is no other pulse: with 3, 2, 1 and

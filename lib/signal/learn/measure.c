@@ -1,11 +1,14 @@
 /* measure.c - see measure.h */
 #include "signal/learn/measure.h"
 #include "num/dot.h"
+#include "num/lesser.h"
+#include "num/sigmas.h"
 #include "signal/detect/align.h"
 #include "signal/learn/find_lines.h"
 #include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/matched.h"
+#include "signal/noise/following.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -37,6 +40,8 @@ static const double NEAR_OF_FEW = 0.01;
 
 /* The record while it is measured: aligned from some point on, then in units of the
  * noise. */
+enum { LEVELS = 16 };
+
 struct record {
 	const struct calibrate_par *par;
 	double *y1, *y2;
@@ -45,7 +50,78 @@ struct record {
 	double low;   /* lag of the lowest autocorrelation */
 	int wide;     /* see measure.h */
 	struct lines lines;
+	/* Noise in the middle of equal parts of the first samples over its mean. */
+	double level[LEVELS];
+	size_t levelled;
 };
+
+/* Relative standard error of a level: that of following_measure() of either channel
+ * (tests/unit/following.c). */
+static double level_error(size_t n)
+{
+	return 1.46 / sqrt(2 * (double)n);
+}
+
+/* 1 if the noise changes from part to part, by more than the standard error n samples
+ * leave and more than neighbouring parts differ.  level[k] is that of part k. */
+static int find_levels(struct record *rec, const unsigned char *const hidden[2])
+{
+	const size_t part = rec->levelled / LEVELS, n = lesser(part, FOLLOWING_BLOCK);
+	double step[LEVELS], most = 0, error, mean;
+
+	for (size_t k = 0; k < LEVELS; k++) {
+		size_t from = k * part + (part - n) / 2;
+		double a = following_measure(
+			rec->y1 + from, hidden[0] ? hidden[0] + from : NULL, n);
+		double b = following_measure(
+			rec->y2 + from, hidden[1] ? hidden[1] + from : NULL, n);
+
+		rec->level[k] = sqrt(a * b);
+		if (!(rec->level[k] > 0))
+			return 0;
+	}
+	mean = mean_of(rec->level, LEVELS);
+	for (size_t k = 0; k < LEVELS; k++) {
+		rec->level[k] /= mean;
+		most = fmax(most, fabs(log(rec->level[k])));
+		if (k > 0)
+			step[k - 1] = fabs(log(rec->level[k] / rec->level[k - 1]));
+	}
+	/* of normal deviates the median modulus is 0.674 */
+	error = robust_median(step, LEVELS - 1) / (0.674 * M_SQRT2);
+	return most > SIGMAS_RARELY * fmax(error, level_error(n));
+}
+
+/* Divides y[0 .. n) by the level, as of straight lines between the parts. */
+static void divide_by_level(const struct record *rec, double *y, size_t n)
+{
+	for (size_t i = 0; i < n; i++) {
+		double place = (double)(i * LEVELS) / (double)rec->levelled - 0.5;
+		size_t k;
+
+		place = fmin(fmax(place, 0), LEVELS - 1);
+		k = (size_t)fmin(floor(place), LEVELS - 2);
+		y[i] /= rec->level[k] +
+			(place - (double)k) * (rec->level[k + 1] - rec->level[k]);
+	}
+}
+
+/* Gives the noise one level: its spectrum and standard deviation are learned from all of
+ * the record, not only from where it is low. */
+static void level_noise(struct record *rec, const struct calibration *c)
+{
+	const unsigned char *hidden[2] = { c->whitening.tap ? NULL : rec->par->hidden[0],
+		c->whitening.tap ? NULL : rec->par->hidden[1] };
+
+	rec->levelled = rec->n;
+	if (find_levels(rec, hidden)) {
+		divide_by_level(rec, rec->y1, rec->n);
+		divide_by_level(rec, rec->y2, rec->n);
+	} else {
+		for (int k = 0; k < LEVELS; k++)
+			rec->level[k] = 1;
+	}
+}
 
 static double variance(const double *x, size_t n)
 {
@@ -550,16 +626,19 @@ int measure_white_above(const struct look *look, double duration)
 
 /* Scales a pulse taken from a whitened record so that amplitudes are those of the
  * original record. */
-static enum separate_status set_peak(const double *raw, size_t n, double *work,
+static enum separate_status set_peak(const struct record *rec, const double *raw,
 	const struct template *found, struct calibration *c)
 {
+	double *work = rec->work;
 	struct tones_track track;
 	enum separate_status status;
 
-	memcpy(work, raw, n * sizeof *work);
-	status = find_lines_take(c, work, n, &track);
-	if (status == SEPARATE_OK)
-		shape_scale(c->shape, c->noise[0] / template_peak(found, work, n));
+	memcpy(work, raw, rec->n * sizeof *work);
+	status = find_lines_take(c, work, rec->n, &track);
+	if (status == SEPARATE_OK) {
+		divide_by_level(rec, work, rec->n);
+		shape_scale(c->shape, c->noise[0] / template_peak(found, work, rec->n));
+	}
 	return status;
 }
 
@@ -574,8 +653,10 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	};
 	enum separate_status status = find_lines(par, y1, y2, n, work, c, &rec.lines);
 
-	if (status == SEPARATE_OK)
+	if (status == SEPARATE_OK) {
+		level_noise(&rec, c);
 		status = find_lag(&rec, c);
+	}
 	if (status == SEPARATE_OK && measure_noise(&rec, c) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	if (status == SEPARATE_OK)
@@ -626,7 +707,7 @@ enum separate_status measure(struct look *look, const double *raw, double *y1, d
 	if (status == SEPARATE_OK)
 		status = learn(&rec, &look->found, c);
 	if (status == SEPARATE_OK && c->measured && c->whitening.tap)
-		status = set_peak(raw, n, work, &look->found, c);
+		status = set_peak(&rec, raw, &look->found, c);
 	template_clear(&look->found);
 	return status == SEPARATE_OK ? conclude(&rec, c) : status;
 }
