@@ -684,6 +684,14 @@ static void test_own(
 	}
 	scatter = joint_scatter(of->own, own, PULSES, LIKELIHOOD_CERTAIN);
 	ok(scatter < 1e-3, "small pulses show no scatter that large ones do not have");
+	for (unsigned i = 0; i < PULSES; i++) {
+		philox_normal2(11, i, RNG_NOISE, 1, z);
+		own[i].se = 1e-3;
+		own[i].share = 40 * z[0];
+	}
+	scatter = joint_scatter(of->own, own, PULSES, LIKELIHOOD_CERTAIN);
+	ok(scatter == 0, "a scatter of more than a factor of two is none (%.2g)",
+		scatter);
 }
 
 /* Two pulses that overlap, with deviations of 1 % of both signs: those of the set are
