@@ -38,10 +38,11 @@ static const double NEAR = 0.003;
  * and 94 % with this. */
 static const double NEAR_OF_FEW = 0.01;
 
-/* The record while it is measured: aligned from some point on, then in units of the
- * noise. */
+/* Parts of the record whose noise may differ. */
 enum { LEVELS = 16 };
 
+/* The record while it is measured: aligned from some point on, then in units of the
+ * noise. */
 struct record {
 	const struct calibrate_par *par;
 	double *y1, *y2;
@@ -50,9 +51,8 @@ struct record {
 	double low;   /* lag of the lowest autocorrelation */
 	int wide;     /* see measure.h */
 	struct lines lines;
-	/* Noise in the middle of equal parts of the first samples over its mean. */
-	double level[LEVELS];
-	size_t levelled;
+	double level[LEVELS]; /* noise of either part over its mean */
+	size_t levelled;      /* samples of all parts */
 };
 
 /* Relative standard error of a level: that of following_measure() of either channel
