@@ -63,12 +63,12 @@ struct partition *partition_new(double area, long first_step, int sizes);
 void partition_free(struct partition *p);
 
 /* Adds a class and returns its number in later calls, -1 without memory or beyond
- * PARTITION_CLASSES_MAX of them.  sparse: 1 if steps and realisations
- * missing from the input, up to the largest in it, shed nothing (particle tables); 0 if
- * they were not simulated.  pressure: nominal, Pa; NAN if there is only one class.
- * area: m2; < 0 if not given.  If no class has an area, the classes of lowest and highest
- * pressure divide what the zone leaves; otherwise a class without an area only
- * determines the wear within the zone. */
+ * PARTITION_CLASSES_MAX of them.  sparse: 1 if steps and realisations missing from the
+ * input, up to the largest in it, shed nothing (particle tables); 0 if they were not
+ * simulated.  pressure: nominal, Pa; NAN if there is only one class.  area: m2; < 0 if
+ * not given.  If no class has an area, the classes of lowest and highest pressure divide
+ * what the zone leaves; otherwise a class without an area only determines the wear within
+ * the zone. */
 int partition_class(struct partition *p, int sparse, double pressure, double area);
 
 /* A sparse class has at least this realisation and this step, though nothing may have
