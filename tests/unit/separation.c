@@ -129,7 +129,8 @@ static void test_tones(void)
 			0.05 * normal((uint64_t)i);
 		y2[i] = 0.1 * sin(w[0] * i) + 0.05 * normal(N + (uint64_t)i);
 	}
-	ok(tones_find(y1, y2, N, 0, TONES_MAX, omega, &tones) == NUM_OK && tones == 2,
+	ok(tones_find(y1, y2, N, TONES_SIDE, 3, TONES_MAX, omega, &tones) == NUM_OK &&
+			tones == 2,
 		"two tones are found");
 	/* Resolution 1 / N; a tenth of it is easily reached at this level. */
 	near(omega[0], w[0], 0.1 * 2 * acos(-1) / N, "the first frequency is right");
@@ -146,7 +147,8 @@ static void test_tones(void)
 	for (int i = 0; i < N; i++) /* a pulse every 250 samples: lines without a tone */
 		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
 			0.05 * normal((uint64_t)i);
-	ok(tones_find(y1, y1, N, 0, TONES_MAX, omega, &tones) == NUM_OK && tones > 2,
+	ok(tones_find(y1, y1, N, TONES_SIDE, 3, TONES_MAX, omega, &tones) == NUM_OK &&
+			tones > 2,
 		"a train of pulses has lines");
 	ok(tones_confirm(y1, y1, N, 1, &tones, omega) == NUM_OK && tones == 0,
 		"a train of pulses has no tones");

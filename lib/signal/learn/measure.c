@@ -107,14 +107,15 @@ static void divide_by_level(const struct record *rec, double *y, size_t n)
 }
 
 /* Gives the noise one level: its spectrum and standard deviation are learned from all of
- * the record, not only from where it is low. */
+ * the record, not only from where it is low.  Not behind a known filter, where the fourth
+ * difference does not tell the noise in its band. */
 static void level_noise(struct record *rec, const struct calibration *c)
 {
 	const unsigned char *hidden[2] = { c->whitening.tap ? NULL : rec->par->hidden[0],
 		c->whitening.tap ? NULL : rec->par->hidden[1] };
 
 	rec->levelled = rec->n;
-	if (find_levels(rec, hidden)) {
+	if (!rec->par->filter && find_levels(rec, hidden)) {
 		divide_by_level(rec, rec->y1, rec->n);
 		divide_by_level(rec, rec->y2, rec->n);
 	} else {

@@ -26,13 +26,8 @@ static int by_power(const void *x, const void *y)
 	return p->power > q->power ? -1 : p->power < q->power;
 }
 
-/* Times the usual sample, which includes the lines, to which pulses are clipped:
- * unclipped, the spectrum of rare strong pulses would hide lines.  What strong lines
- * leave has none that clipping would give harmonics: at the usual sample five sixths of
- * the information on a weak line in white noise are left, and a ninth of the energy of
- * pulses. */
-static const double CLIP = 3, CLIP_AGAIN = 1;
-
+/* Pulses are clipped to a multiple of the usual sample, which includes the lines:
+ * unclipped, the spectrum of rare strong pulses would hide lines. */
 static void add_clipped(
 	struct periodogram *p, const double *y, size_t n, double clip, double *power)
 {
@@ -49,15 +44,11 @@ static void add_clipped(
 	periodogram_add(p, 1, power, n / 2 + 1);
 }
 
-/* Bins on either side that a line has to exceed; fewer if it shows only without others:
- * what a drifting baseline leaves falls steeply from bin to bin. */
-enum { SIDE = 64, SIDE_AGAIN = 12 };
-
 static int pick_lines(const double *power, size_t n, size_t side, int max, double *omega)
 {
 	enum { KEEP = 256 };
 	struct line line[KEEP] = { { 0, 0 } };
-	double around[2 * SIDE];
+	double around[2 * TONES_SIDE];
 	int count = 0;
 
 	for (size_t k = 3; k + 3 <= n / 2; k++) {
@@ -90,8 +81,8 @@ static int pick_lines(const double *power, size_t n, size_t side, int max, doubl
 	return count;
 }
 
-enum num_status tones_find(const double *y1, const double *y2, size_t n, int again,
-	int max, double *omega, int *tones)
+enum num_status tones_find(const double *y1, const double *y2, size_t n, int side,
+	double clip, int max, double *omega, int *tones)
 {
 	struct periodogram *p;
 	double *power;
@@ -106,12 +97,10 @@ enum num_status tones_find(const double *y1, const double *y2, size_t n, int aga
 	power = calloc(n / 2 + 1, sizeof *power);
 	status = p && power ? NUM_OK : NUM_MEMORY;
 	if (status == NUM_OK) {
-		double clip = again ? CLIP_AGAIN : CLIP;
-
 		add_clipped(p, y1, n, clip, power);
 		add_clipped(p, y2, n, clip, power);
-		*tones = pick_lines(power, n, again ? SIDE_AGAIN : SIDE,
-			max > TONES_MAX ? TONES_MAX : max, omega);
+		*tones = pick_lines(
+			power, n, (size_t)side, max > TONES_MAX ? TONES_MAX : max, omega);
 	}
 	periodogram_free(p);
 	free(power);

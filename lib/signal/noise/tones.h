@@ -9,7 +9,7 @@
 #include "num/status.h"
 #include <stddef.h>
 
-enum { TONES_MAX = 16 };
+enum { TONES_MAX = 16, TONES_SIDE = 64 };
 
 enum tones_status {
 	TONES_OK,
@@ -19,11 +19,11 @@ enum tones_status {
 
 /* Frequencies, rad per sample, ascending, that exceed the summed periodogram of both
  * channels (n samples each, n >= 1024, Hann window): lines at least 40 times the median
- * of the bins on either side, which white noise exceeds with probability 2^-40 per bin;
- * the strongest max of them, *tones in all.  again: 1 in what lines that were found have
- * left: pulses, then larger than the usual sample, hide less of it. */
-enum num_status tones_find(const double *y1, const double *y2, size_t n, int again,
-	int max, double *omega, int *tones);
+ * of the bins on either side, at most TONES_SIDE, which white noise exceeds with
+ * probability 2^-40 per bin; the strongest max of them, *tones in all.  Samples are
+ * clipped to so many times the usual one. */
+enum num_status tones_find(const double *y1, const double *y2, size_t n, int side,
+	double clip, int max, double *omega, int *tones);
 
 /* Least squares of a constant and tones over x[0..n), whose first sample has index
  * start: coefficient[0] the constant, [1 + 2 k] of cos(omega k t), [2 + 2 k] of sin,
