@@ -299,6 +299,10 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
 		"a delay range that precedes the particle is refused");
 	s = *good;
+	s.scatter[JOINT_WIDTH] = 44;
+	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
+		"widths that scatter without limit are refused");
+	s = *good;
 	ok(joint_fit(j, &s, y, y, 0, p, &m, &r) == JOINT_DOMAIN,
 		"a scene without samples is refused");
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_OK && m == 0 && r.chi2 == 0,

@@ -193,8 +193,8 @@ size_t joint_deviations(struct joint *joint, unsigned set,
 
 /* Standard deviation of what n pulses have of their own from a straight line in time,
  * beside that of its errors, of maximum likelihood; 0 unless twice the logarithm of the
- * ratio of its likelihood to that of none exceeds certain.  n: at most
- * JOINT_SCATTER_MAX. */
+ * ratio of its likelihood to that of none exceeds certain, or if three of it are more
+ * than a factor of two.  n: at most JOINT_SCATTER_MAX. */
 enum { JOINT_SCATTER_MAX = 256 };
 double joint_scatter(int own, const struct joint_deviation *of, size_t n, double certain);
 

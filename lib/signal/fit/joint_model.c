@@ -2,6 +2,7 @@
  * joint_state.h */
 #include "num/sigmas.h"
 #include "signal/fit/joint_state.h"
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,13 +73,20 @@ static enum joint_status reserve_samples(struct joint *j, size_t n)
 	return JOINT_OK;
 }
 
-enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s)
+/* Samples that the longest pulse of a scene may touch. */
+static double longest_support(const struct joint_scene *s)
 {
 	double longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
 	double length = 2 * shape_reach(s->shape) * fmax(s->width, 1) *
 			joint_duration(s, fmax(longest, 0), 0) *
 			exp(SIGMAS_NEVER * s->scatter[JOINT_WIDTH]);
-	size_t support = (size_t)(length + 0.4 * s->duration) + 4;
+
+	return floor(length + 0.4 * s->duration) + 4;
+}
+
+enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s)
+{
+	size_t support = (size_t)longest_support(s);
 	double *at;
 
 	if (support <= j->support)
@@ -484,6 +492,9 @@ static int scene_is_sane(
 		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
+		return 0;
+	/* Memory is reserved for it. */
+	if (!(longest_support(s) < INT_MAX))
 		return 0;
 	/* The tolerance of joint_moved() must keep T positive. */
 	if (s->delta_min - JOINT_BEYOND * (s->delta_max - s->delta_min) <= -s->transit)

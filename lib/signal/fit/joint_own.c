@@ -385,7 +385,7 @@ static double unlikely(
 
 /* Largest scatter: the deviations are linear in what a pulse has of its own, and three
  * standard deviations of this are then a factor of two. */
-static const double MOST = M_LN2 / 3;
+static const double MOST = M_LN2 / SIGMAS_SELDOM;
 
 double joint_scatter(int own, const struct joint_deviation *w, size_t n, double certain)
 {
