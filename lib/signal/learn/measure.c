@@ -51,16 +51,9 @@ struct record {
 	double low;   /* lag of the lowest autocorrelation */
 	int wide;     /* see measure.h */
 	struct lines lines;
-	double level[LEVELS]; /* noise of either part over its mean */
+	double level[LEVELS]; /* noise of each part over its mean */
 	size_t levelled;      /* samples of all parts */
 };
-
-/* Relative standard error of a level: that of following_measure() of either channel
- * (tests/unit/following.c). */
-static double level_error(size_t n)
-{
-	return 1.46 / sqrt(2 * (double)n);
-}
 
 /* 1 if the noise changes from part to part, by more than the standard error n samples
  * leave and more than neighbouring parts differ.  level[k] is that of part k. */
@@ -89,7 +82,7 @@ static int find_levels(struct record *rec, const unsigned char *const hidden[2])
 	}
 	/* of normal deviates the median modulus is 0.674 */
 	error = robust_median(step, LEVELS - 1) / (0.674 * M_SQRT2);
-	return most > SIGMAS_RARELY * fmax(error, level_error(n));
+	return most > SIGMAS_RARELY * fmax(error, following_error(2 * n));
 }
 
 /* Divides y[0 .. n) by the level, as of straight lines between the parts. */

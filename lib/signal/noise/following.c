@@ -52,17 +52,19 @@ static double believe(struct following *f, double now, double first, double seco
 	return mean;
 }
 
-/* Relative standard error of a measure of white noise times the root of the samples
- * (tests/unit/following.c), and the blocks that it counts for,
- * which are as many as the noise was learned from. */
-static const double ERROR = 1.46;
+double following_error(size_t n)
+{
+	return 1.46 / sqrt((double)n); /* tests/unit/following.c */
+}
+
+/* Blocks that the error counts for, which are as many as the noise was learned from. */
 enum { PRIOR = 16 };
 
 void following_start(struct following *f, long long begin, size_t block, double reference,
 	double first, double second)
 {
 	*f = (struct following){ .block = block, .begin = begin, .reference = reference };
-	f->error = ERROR / sqrt((double)block);
+	f->error = following_error(block);
 	f->known = PRIOR;
 	f->variance = f->error * f->error / PRIOR;
 	f->last = first / reference;

@@ -29,6 +29,8 @@ struct following {
 /* Standard deviation of the noise in n <= FOLLOWING_BLOCK samples of x, those with a flag
  * left out; 0 if it cannot be told. */
 double following_measure(const double *x, const unsigned char *hidden, size_t n);
+/* Its relative standard error, of n samples of white noise. */
+double following_error(size_t n);
 
 /* first, second: measures of the first two blocks. */
 void following_start(struct following *f, long long begin, size_t block, double reference,
