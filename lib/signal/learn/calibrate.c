@@ -456,7 +456,7 @@ static enum separate_status without_crosstalk(
 }
 
 /* The range of velocities and the crosstalk, from the channels without their lines, which
- * look like pulses, and into seen both channels without bubbles. */
+ * look like pulses, and into seen, unless NULL, both channels without bubbles. */
 static enum separate_status survey(
 	const struct look *look, struct velocities *v, double crosstalk[2], double *seen)
 {
@@ -479,9 +479,11 @@ static enum separate_status survey(
 			velocities_find(m, n, v) != NUM_OK ||
 			crosstalk_find(x, look->par->hidden, n, m, crosstalk) != NUM_OK))
 		status = SEPARATE_MEMORY;
-	memcpy(seen, look->x[0], n * sizeof *seen);
-	memcpy(seen + n, look->x[1], n * sizeof *seen);
-	if (status == SEPARATE_OK &&
+	if (seen) {
+		memcpy(seen, look->x[0], n * sizeof *seen);
+		memcpy(seen + n, look->x[1], n * sizeof *seen);
+	}
+	if (seen && status == SEPARATE_OK &&
 		bubbles_remove(v, WIDER, m, y, n, y + 2 * n, seen) != NUM_OK)
 		status = SEPARATE_MEMORY;
 	marks_clear(&m[0]);
@@ -521,16 +523,17 @@ static enum separate_status calibrate_as(const struct calibrate_par *par, int eq
 	struct look clean;
 	struct velocities v = { 0 };
 	double crosstalk[2] = { 0 }, *x = NULL;
-	double *seen = malloc((2 * n + 1) * sizeof *seen);
+	/* A filter that is to be undone has given the pulses lobes, which look like
+	 * slower pulses. */
+	const int known = par->filter || !isnan(par->lag) || !isnan(par->spread) ||
+			  !isnan(par->duration);
+	double *seen = known ? NULL : malloc((2 * n + 1) * sizeof *seen);
 	enum separate_status status = SEPARATE_MEMORY;
 
 	memset(c, 0, sizeof *c);
-	if (seen)
+	if (known || seen)
 		status = survey(&look, &v, crosstalk, seen);
-	/* A filter that is to be undone has given the pulses lobes, which look like
-	 * slower pulses. */
-	if (par->filter || !isnan(par->lag) || !isnan(par->spread) ||
-		!isnan(par->duration)) {
+	if (known) {
 		v = (struct velocities){ 0 };
 	} else {
 		look.x[0] = seen;
