@@ -85,10 +85,11 @@ near "the wear coefficient is V H / (F s)" "$(column wear_coefficient s.tsv | he
 	"$(column volume s.tsv | awk 'NR == 1 { printf "%.17g", $1 * 3 * 355e6 / (20e6 * 0.25e-6 * 0.25e-3) }')" 1e-12
 column wear_coefficient s.tsv | awk '{ s += $1; q[NR] = $1 } END { m = s / NR
 	for (i = 1; i <= NR; i++) v += (q[i] - m) ^ 2
-	printf "%.9g %.9g", m, m - 3.18244630528 * sqrt(v / (NR - 1) / NR) }' >want
-is "the mean and the 95 % interval over four steps are those of Student" \
-	"$(column wear_coefficient_mean s.tsv | tail -1 | awk '{ printf "%.9g", $1 }') $(column wear_coefficient_low s.tsv |
-	tail -1 | awk '{ printf "%.9g", $1 }')" "$(cat want)"
+	k = exp(3.18244630528 * sqrt(v / (NR - 1) / NR) / m)
+	printf "%.9g\n%.9g\n%.9g\n", m, m / k, m * k }' >want
+is "the mean over four steps, and the 95 % interval of its logarithm by Student" \
+	"$(for c in mean low high; do column wear_coefficient_$c s.tsv | tail -1; done |
+	awk '{ printf "%.9g\n", $1 }')" "$(cat want)"
 is "one step has no interval" "$(column wear_coefficient_low s.tsv | head -1)" nan
 
 # Archard's law: k p ds.

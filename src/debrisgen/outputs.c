@@ -3,6 +3,7 @@
 #include "common/contact_options.h"
 #include "io/tables.h"
 #include "num/grid.h"
+#include "num/running.h"
 #include "num/student.h"
 #include "stress/stress_kernel.h"
 #include "surface/surface.h"
@@ -64,17 +65,10 @@ struct held_fields {
 	struct record last;     /* without fields: none yet */
 };
 
-/* Archard's coefficients of the steps of a surface so far. */
-struct coefficients {
-	long count;
-	double sum, squares; /* about the first one */
-	double first;
-};
-
 struct worn {
 	struct table_out *particles, *summary;
 	struct held_fields surface, counter, stress;
-	struct coefficients coefficients;
+	struct running coefficients; /* Archard's, of the steps of a surface so far */
 };
 
 /* Takes ownership of the record. */
@@ -184,7 +178,7 @@ void worn_begin(
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
-	w->coefficients = (struct coefficients){ 0 };
+	w->coefficients = (struct running){ 0 };
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
@@ -211,27 +205,6 @@ static void put_particles(struct table_out *t, long realisation, long step, int 
 	table_flush(t);
 }
 
-/* Takes the coefficient of a step; mean and 95 % interval of those so far, as of
- * independent steps. */
-static void take_coefficient(struct coefficients *c, double k, double out[3])
-{
-	double d, mean, half = NAN;
-
-	if (c->count++ == 0)
-		c->first = k;
-	d = k - c->first;
-	c->sum += d;
-	c->squares += d * d;
-	mean = c->sum / (double)c->count;
-	if (c->count > 1)
-		half = student_two_sided(0.95, c->count - 1) *
-		       sqrt(fmax(0, c->squares / (double)c->count - mean * mean) /
-			       (double)(c->count - 1));
-	out[0] = c->first + mean;
-	out[1] = out[0] - half;
-	out[2] = out[0] + half;
-}
-
 double worn_roughness(const struct worn_surface *c)
 {
 	const struct record *r = c->r;
@@ -245,15 +218,16 @@ double worn_roughness(const struct worn_surface *c)
 	return sq;
 }
 
-static void put_summary(struct table_out *t, struct coefficients *coefficients,
+static void put_summary(struct table_out *t, struct running *coefficients,
 	const struct worn_surface *c, const struct worn_step *s)
 {
 	const struct debris_step *first = s->lost;
 	const struct debris_step none = { .volume = 0 },
 				 *second = s->second ? s->second : &none;
 	double particles = (double)(first->count + second->count), sum = 0, most = 0;
-	double volume = first->volume + second->volume, k[3];
+	double volume = first->volume + second->volume;
 	double coefficient = volume * s->hardness / (first->load * s->length);
+	double n, wide = NAN;
 	/* a surrogate gives neither depths nor the worn surface */
 	int worn = !s->volumes || s->volumes->exact;
 
@@ -265,7 +239,13 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		sum += second->particle[i].diameter;
 		most = fmax(most, second->particle[i].diameter);
 	}
-	take_coefficient(coefficients, coefficient, k);
+	running_add(coefficients, coefficient);
+	n = coefficients->n;
+	/* Student's interval of the logarithm: positive values are skewed */
+	if (n > 1)
+		wide = student_two_sided(0.95, (long)n - 1) *
+		       sqrt(running_variance(coefficients) / n);
+	wide = exp(wide > 0 ? wide / coefficients->mean : wide);
 	double row[] = { (double)c->r->realisation, (double)s->number, s->distance,
 		first->load, first->contact, first->max_pressure, first->edge_load,
 		volume, particles, particles > 0 ? sum / particles : NAN,
@@ -273,7 +253,9 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		worn ? fmax(first->depth, second->depth) : NAN,
 		worn ? worn_roughness(c) / c->sq : NAN,
 		fmax(first->wear.stress, second->wear.stress), first->volume,
-		second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0, 0, 0, 0 };
+		second->volume, coefficient, coefficients->mean,
+		coefficients->mean / wide, coefficients->mean * wide, 0, 0, 0, 0, 0, 0,
+		0 };
 	enum { GRID = 7, PLAIN = sizeof(row) / sizeof *row - GRID };
 
 	if (s->grid) {
