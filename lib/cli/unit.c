@@ -199,6 +199,15 @@ double decimal_parse(const char *text, char **end)
 	return strtod(text, end);
 }
 
+double sample_parse(const char *text, char **end)
+{
+	double v = decimal_parse(text, end);
+
+	if (isinf(v) && isdigit((unsigned char)(*end)[-1]))
+		*end = (char *)text;
+	return v;
+}
+
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end)
 {

@@ -44,6 +44,9 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 
 /* strtod, but not for hexadecimal numbers: of those it reads nothing. */
 double decimal_parse(const char *text, char **end);
+/* The same where infinity denotes a missing sample: of a number beyond double precision
+ * it reads nothing, too. */
+double sample_parse(const char *text, char **end);
 
 /* k steps, to 15 digits: limits of classes and periods that are compared with decimal
  * numbers.  Three times 0.1 is 4e-17 more than 0.3, which would be below its limit. */

@@ -164,7 +164,7 @@ static int number(struct text_in *t, char *s, double *v)
 		decimal = ',';
 		*point = '.';
 	}
-	*v = decimal_parse(s, &end);
+	*v = sample_parse(s, &end);
 	if (end == s || *end)
 		return 0;
 	if (t->decimal && decimal && decimal != t->decimal)

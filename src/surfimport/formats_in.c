@@ -1,5 +1,6 @@
 #include "formats_in.h"
 #include "cli/msg.h"
+#include "cli/unit.h"
 #include "points.h"
 #include <ctype.h>
 #include <math.h>
@@ -301,7 +302,7 @@ static double sdf_height(const struct content *c, const char **at)
 {
 	size_t n = strcspn(*at, " \t\r\n,");
 	char word[32], *end;
-	double v = height_parse(*at, &end);
+	double v = sample_parse(*at, &end);
 
 	snprintf(word, sizeof word, "%.*s", n < sizeof word ? (int)n : 31, *at);
 	if (end != *at + n) {

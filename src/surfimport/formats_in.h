@@ -37,10 +37,6 @@ void text_read(const struct content *c, const struct told *told, struct record *
 /* 1 if the text is a mark of a missing sample, such as BAD. */
 int is_gap(const char *text);
 
-/* decimal_parse(), but infinity denotes a missing sample: of a number beyond double
- * precision it reads nothing, too. */
-double height_parse(const char *text, char **end);
-
 /* A unit of length by its name, "um", "microns", in m; NAN if it is none. */
 double unit_named(const char *name, size_t length);
 

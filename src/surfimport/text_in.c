@@ -102,15 +102,6 @@ int is_gap(const char *s)
 	return 0;
 }
 
-double height_parse(const char *text, char **end)
-{
-	double v = decimal_parse(text, end);
-
-	if (isinf(v) && isdigit((unsigned char)(*end)[-1]))
-		*end = (char *)text;
-	return v;
-}
-
 /* Reads one cell; 0 if it is not a number. */
 static int cell(const struct text *t, char *s, double *v)
 {
@@ -130,7 +121,7 @@ static int cell(const struct text *t, char *s, double *v)
 		return 0;
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
-	*v = height_parse(s, &end);
+	*v = sample_parse(s, &end);
 	return end != s && !*end;
 }
 
