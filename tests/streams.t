@@ -6,7 +6,8 @@
 header() {
 	{
 		printf '%s\n' NRRD0004 'type: double' 'dimension: 2' 'sizes: 4 3' \
-			'spacings: 1e-6 2e-6' 'endian: little' 'encoding: raw'
+			'spacings: 1e-6 2e-6' 'endian: little' 'encoding: raw' \
+			'units: m m' 'sample units: m'
 		printf '%s\n' "$@"
 	} | awk -F ': ' '{ k = /^NRRD/ || /^#/ ? $0 : $1; if (!(k in seen)) order[++n] = k
 		seen[k] = $0 } END { for (i = 1; i <= n; i++) if (seen[order[i]] != "") print seen[order[i]]; print "" }'
@@ -32,6 +33,17 @@ cell() {
 ok 'a plain two-dimensional NRRD is read' records plain.nrrd
 is 'the size and spacing of a plain NRRD are read' "$(cell nx) $(cell ny) $(cell dx) $(cell dy)" '4 3 1e-06 2e-06'
 is 'the samples of a plain NRRD are read' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
+# unstated WHAT FILE: the program names what has no unit
+unstated() {
+	records "$2" >out 2>err
+	is "the unit of $1 is missing" "$? $(cat err)" "0 records: $2: no unit of $1 in the header: metres are assumed"
+}
+{ header 'sample units: ' 'units: '; ramp; } >none.nrrd
+unstated 'spacings and heights' none.nrrd
+{ header 'sample units: ' 'units: um um'; ramp; } >axes.nrrd
+unstated heights axes.nrrd
+{ header 'units: '; ramp; } >samples.nrrd
+unstated spacings samples.nrrd
 { header 'endian: big'; big_endian_ramp; } >big.nrrd
 ok 'a big-endian NRRD is read' records big.nrrd
 is 'the samples of a big-endian NRRD are read' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
@@ -50,6 +62,8 @@ is 'GSF keeps the spacing' "$(records plain.gsf | grep '^1' | cut -f 8,9,12)" "$
 	printf 'Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nXYUnits = um\nZUnits = nm\n\0\0\0'
 	printf '\0\0\200\077\0\0\0\100\0\0\100\100\0\0\200\100'
 } >units.gsf
+sed 's/^ZUnits = nm$/Title = abc/' units.gsf >none.gsf
+unstated heights none.gsf
 is 'units of GSF are converted in every sample' "$(records -o text units.gsf |
 	awk '!/^#/ { for (i = 1; i <= NF; i++) printf "%.6g ", $i }')" '1e-09 2e-09 3e-09 4e-09 '
 is 'units of the sides of GSF are converted' "$(records units.gsf | grep '^1' | cut -f 8,9)" "$(printf '5e-07\t5e-07')"

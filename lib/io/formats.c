@@ -67,6 +67,15 @@ void check_sizes(const struct place *at, const double *sizes, int n)
 			at->name, at->record, all);
 }
 
+void warn_units(const struct place *at, int spacings, int heights)
+{
+	if (at->record == 1 && !(spacings && heights))
+		warn("%s: no unit of %s in the header: metres are assumed", at->name,
+			spacings  ? "heights"
+			: heights ? "spacings"
+				  : "spacings and heights");
+}
+
 void check_spacing(const struct place *at, int axis, double spacing)
 {
 	if (!(spacing >= 1e-30 && spacing <= 1e30))

@@ -82,6 +82,9 @@ extern const char mark_key[], mark_zeros[];
 /* Dies unless each size is at least 1 and the record fits into memory. */
 void check_sizes(const struct place *at, const double *sizes, int n);
 
+/* Warns if a file, of which it is the first record, does not state units of lengths. */
+void warn_units(const struct place *at, int spacings, int heights);
+
 /* Dies unless the spacing of an axis, in metres, is one that a surface can have. */
 void check_spacing(const struct place *at, int axis, double spacing);
 

@@ -62,7 +62,7 @@ int gsf_is(const char *magic)
 
 void gsf_read(struct place *at, struct record *r)
 {
-	double sizes[2] = { 0 }, real[2] = { 0 }, xy = 1, z = 1;
+	double sizes[2] = { 0 }, real[2] = { 0 }, xy = 0, z = 0; /* 0: not stated */
 	size_t size = strlen(first_line) + 1;
 
 	while (input_peek(at->in) > 0) {
@@ -96,6 +96,9 @@ void gsf_read(struct place *at, struct record *r)
 			at->name, at->record);
 	skip_padding(at, size);
 	check_sizes(at, sizes, 2);
+	warn_units(at, xy > 0, z > 0);
+	xy = xy > 0 ? xy : 1;
+	z = z > 0 ? z : 1;
 	r->nx = (int)sizes[0];
 	r->ny = (int)sizes[1];
 	r->nz = 1;

@@ -26,10 +26,10 @@ struct header {
 	char units[AXES][16];
 	int list_first; /* kinds say that axis 0 is a list */
 	int raw;
-	int endian; /* 0 not stated, 1 little, 2 big */
-	int type;   /* 0 not stated, 4 float, 8 double */
-	char *fields;
-	struct keys seen[2]; /* names of fields, in small letters, and of keys */
+	int endian;            /* 0 not stated, 1 little, 2 big */
+	int type;              /* 0 not stated, 4 float, 8 double */
+	char *fields, *sample; /* names and units; the unit of samples */
+	struct keys seen[2];   /* names of fields, in small letters, and of keys */
 };
 
 static _Noreturn void bad(const struct place *at, const char *what, const char *value)
@@ -134,8 +134,7 @@ static void read_field(
 				at->name, at->record, v);
 	} else if (strcasecmp(key, "sample units") == 0 ||
 		   strcasecmp(key, "sampleunits") == 0) {
-		if (!h->fields)
-			h->fields = xprintf("height %s", v);
+		h->sample = *v ? xstrdup(v) : NULL;
 	} else if (!word_in(key, ignored)) {
 		die(EXIT_RUN, "%s: record %ld: NRRD field '%.30s' is not supported",
 			at->name, at->record, key);
@@ -364,10 +363,15 @@ void nrrd_read(struct place *at, struct record *r)
 	r->dx = spacing(at, &h, list);
 	r->dy = spacing(at, &h, list + 1);
 	r->dz = h.dimension == 4 ? spacing(at, &h, 3) : 0;
+	if (!h.fields) {
+		warn_units(at, *h.units[list] != '\0', h.sample || h.sizes[0] * list > 1);
+		h.fields = h.sample ? xprintf("height %s", h.sample) : NULL;
+	}
 	name_fields(at, h.fields, r, list ? (int)h.sizes[0] : 1);
-	free(h.fields);
 	samples_read(at, r, (struct samples){ h.type == 4, h.endian == 2 });
 	convert_units(at, r);
+	free(h.sample);
+	free(h.fields);
 }
 
 /* Value of a key: escaped, and without ": ", which ParaView's reader cannot parse. */
