@@ -37,6 +37,17 @@ is "commas are read as separators" "$(heights b.nrrd)" "1 5 2 4 nan 6"
 printf '# by hand\nheights of a plate\n 1.5   -2e-3 \n4 6 \n' >blank.txt
 surfimport --pixel 1um --height-unit 1m blank.txt >b.nrrd
 is "blanks, comments and a heading are read" "$(heights b.nrrd)" "1.5 -0.002 4 6"
+printf '# by A, on a Monday; 2 rows\n1,2\n3,4\n' >comment.csv
+surfimport --pixel 1um --height-unit 1m comment.csv >b.nrrd 2>err
+is "a comment with separators is no row" "$(heights b.nrrd)" "1 2 3 4"
+printf '# Channel: Topography\n# Width: 6.00 \302\265m\n# Height: 3.00 \302\265m\n# Value units: nm\n1\t2\t3\n4\t5\t6\n' >gwyddion.txt
+surfimport gwyddion.txt >b.nrrd
+is "the spacing and unit of a matrix from Gwyddion are read" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+	"1e-09 2e-09 3e-09 4e-09 5e-09 6e-09 2e-06 1.5e-06"
+fails "a spacing other than that of Gwyddion" 1 'not --pixel' surfimport --pixel 2um gwyddion.txt
+fails "a unit of heights other than that of Gwyddion" 1 'not --height-unit' surfimport --height-unit 1m gwyddion.txt
+sed 's/units: nm/units: V/' gwyddion.txt >volt.txt
+fails "a matrix of volts" 1 "line 4: 'V' is not a unit of length" surfimport volt.txt
 printf '1,5 2,25\n4,0 6,5\n' >german.txt
 surfimport --pixel 1um --height-unit 1m german.txt >b.nrrd
 is "decimal commas separated by blanks are read" "$(heights b.nrrd)" "1.5 2.25 4 6.5"

@@ -59,6 +59,8 @@ struct text {
 	long header_line;
 	struct pairs pairs;
 	struct reasons doubts; /* of the comments "# doubtful:" */
+	double width, height;  /* of the surface, m, and the unit of heights, m, of the */
+	double unit;           /* comments that Gwyddion writes; NAN if there are none */
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -218,18 +220,41 @@ static int is_torn_row(const struct text *t, const char *line)
 	return n == t->columns && 2 * numbers >= n;
 }
 
-/* Keeps the reason of a comment "# doubtful:". */
+/* What follows a name; NULL if the text does not begin with it. */
+static const char *behind(const char *s, const char *name)
+{
+	size_t n = strlen(name);
+
+	return strncmp(s, name, n) == 0 ? s + n + strspn(s + n, " \t") : NULL;
+}
+
+/* A length such as "5.00 um"; NAN if it is none. */
+static double length_of(const char *s)
+{
+	char *unit;
+	double v = decimal_parse(s, &unit);
+
+	unit += strspn(unit, " ");
+	return v * unit_named(unit, strlen(unit));
+}
+
 static void read_comment(struct text *t, const char *s)
 {
-	static const char name[] = "doubtful:";
+	const char *value;
 
 	s += strspn(s, " \t");
-	if (strncmp(s, name, sizeof name - 1) != 0)
-		return;
-	s += sizeof name - 1;
-	s += strspn(s, " \t");
-	if (*s)
-		reasons_add(&t->doubts, s);
+	if ((value = behind(s, "doubtful:")) && *value)
+		reasons_add(&t->doubts, value);
+	else if ((value = behind(s, "Width:")))
+		t->width = length_of(value);
+	else if ((value = behind(s, "Height:")))
+		t->height = length_of(value);
+	else if ((value = behind(s, "Value units:"))) {
+		t->unit = unit_named(value, strlen(value));
+		if (isnan(t->unit))
+			die(EXIT_RUN, "%s: line %ld: '%.20s' is not a unit of length",
+				t->c->name, t->line, value);
+	}
 }
 
 static void read_rows(struct text *t, char *text)
@@ -248,15 +273,17 @@ static void read_rows(struct text *t, char *text)
 		if (!end)
 			warn("%s: line %ld: no newline at the end: the last row may be truncated",
 				t->c->name, t->line);
-		if (*line == '#')
+		if (*line == '#') {
 			read_comment(t, line + 1);
+			continue;
+		}
 		/* Empty cells alone are a row of missing samples, below a heading none.
 		 */
-		if (*line == '#' || (!line[strspn(line, " \t;,")] &&
-					    (!t->rows || t->separator == ' ' ||
-						    !strchr(line, t->separator)))) {
+		if (!line[strspn(line, " \t;,")] &&
+			(!t->rows || t->separator == ' ' ||
+				!strchr(line, t->separator))) {
 			missing += !t->rows && !t->header && strpbrk(line, ";,\t");
-			t->empty = t->rows && *line != '#' ? t->line : t->empty;
+			t->empty = t->rows ? t->line : t->empty;
 			continue;
 		}
 		if (!t->rows)
@@ -299,7 +326,7 @@ static double unit_of(const struct text *t, int from_end)
 	int n = 0, k = 0;
 
 	if (!t->header)
-		return NAN;
+		return from_end ? NAN : t->unit;
 	copy = xstrdup(t->header);
 	for (part = copy; part; part = strchr(part, *by), part = part ? part + 1 : NULL)
 		n++;
@@ -522,9 +549,11 @@ static void refuse_positions(const struct text *t)
 
 void text_read(const struct content *c, const struct told *told, struct record *r)
 {
-	struct text t = { .c = c, .separator = ' ' };
+	struct text t = {
+		.c = c, .separator = ' ', .width = NAN, .height = NAN, .unit = NAN
+	};
 	char *text = plain(c);
-	double dx = NAN, dy = NAN, unit, *z;
+	double dx, dy, unit, *z;
 
 	read_rows(&t, text);
 	if (!t.rows)
@@ -544,8 +573,10 @@ void text_read(const struct content *c, const struct told *told, struct record *
 				c->name, t.inner);
 		refuse_points(&t);
 		refuse_positions(&t);
+		dx = isnan(t.height) ? NAN : t.width / t.columns;
+		dy = t.height / (double)t.rows;
 		settle_pixel(c, told, &dx, &dy);
-		unit = settle_unit(c, told, NAN);
+		unit = settle_unit(c, told, t.unit);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);
 		for (size_t i = 0; i < t.n; i++)
 			z[i] = t.value[i] == told->missing ? NAN : t.value[i] * unit;
