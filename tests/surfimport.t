@@ -415,6 +415,9 @@ for type in 'float64 --big-endian' int64 'float32 --size 20x10'; do
 	fails "heights of another type: $type" 1 'heights of up to .* m: want another type, byte order or unit' \
 		surfimport --format raw --size 10x10 --pixel 1um --height-unit 1m --type $type doubles
 done
+perl -e 'print pack "d<*", 0 .. 99' >whole
+fails "whole numbers of the other byte order" 1 'heights of up to .* m: want another type, byte order or unit' \
+	surfimport --format raw --size 10x10 --pixel 1um --height-unit 1um --big-endian whole
 # Four points of a grid are no matrix of three columns, whatever their order; heights that
 # repeat in a column are.
 for rows in '0 0 1\n1 0 4\n0 1 2\n1 1 7\n' '5;0;1\n5;2;4\n0;2;2\n0;0;7\n5;1;3\n0;1;4\n'; do

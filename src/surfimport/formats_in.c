@@ -79,7 +79,11 @@ static size_t take(const struct content *c, size_t at, size_t stride,
 				c->data + at + iy * stride + ix * width_of[type], type,
 				big_endian);
 
-			*z++ = v == missing ? NAN : v * scale;
+			*z = v == missing ? NAN : v * scale;
+			/* check_heights() refuses those near 0, of another byte order */
+			if (*z == 0)
+				*z = nextafter(0, v);
+			z++;
 		}
 	return at + stride * (ny - 1) + nx * width_of[type];
 }
