@@ -20,6 +20,13 @@ near "order 800 reaches -48 dB at 50 Hz" "$got" -48 0.5
 got=$(bpfilter --response --zero-phase | awk -F '\t' '$1 == 80 || $1 == 120 { s += ($4 < 0 ? -$4 : $4) } END { print s }')
 near "the phase in the band is zero without the delay" "$got" 0 1e-9
 
+rm -f err
+for rate in 10kHz 48kHz; do
+	bpfilter --taps --rate $rate >taps 2>>err
+done
+is "too few taps for the rate are reported: the band-pass passes 0 Hz" "$(cat err)" \
+	"bpfilter: --order 200 is too low for the band at a rate of 48000 Hz: the gain at 0 Hz is 1.1 times that in the band"
+
 # an impulse gives the taps, causal and with the delay taken out
 bpfilter --taps | column tap /dev/stdin >taps
 impulse 500 50 | au 10000 1 >impulse.au

@@ -80,6 +80,30 @@ static struct fir_band make_band(double fs)
 		window == FIR_KAISER ? fir_kaiser_beta(attenuation) : 0, !no_scale };
 }
 
+static double gain_at(const double *h, double f)
+{
+	double re, im;
+
+	fir_response(h, (size_t)order + 1, f, 0, &re, &im);
+	return hypot(re, im);
+}
+
+/* An order of too few taps for the rate makes a low-pass of a band-pass: the gain half,
+ * that of an edge, is exceeded where the filter should stop. */
+static void check_stop(const struct fir_band *band, const double *h, double fs)
+{
+	double low = band->low > 0 ? gain_at(h, 0) : 0,
+	       high = band->high < 0.5 ? gain_at(h, 0.5) : 0,
+	       middle = gain_at(h, band->high == 0.5 ? 0.5
+				   : band->low > 0   ? (band->low + band->high) / 2
+						     : 0);
+
+	if (fmax(low, high) > middle / 2)
+		warn("--order %ld is too low for the band at a rate of %g Hz: the gain at %g Hz "
+		     "is %.2g times that in the band",
+			order, fs, low > high ? 0 : fs / 2, fmax(low, high) / middle);
+}
+
 /* Taps for this sampling rate; name is where the rate came from. */
 static double *make_taps(double fs, const char *name)
 {
@@ -94,6 +118,7 @@ static double *make_taps(double fs, const char *name)
 			"a high-pass of odd --order %ld has no gain at half the rate: "
 			"use an even order or --no-scale",
 			order);
+	check_stop(&band, h, fs);
 	return h;
 }
 
