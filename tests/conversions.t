@@ -35,6 +35,15 @@ done
 records worn >list 2>err
 is 'the list of doubtful records says why' "$? $(grep '^# doubtful' list)" '3 # doubtful: worn'
 is 'so do their samples as text' "$(records --output text worn | grep '^# doubtful')" '# doubtful: worn'
+roughgen --points 16 --length 1mm --sq 1um --corr 200um | bemcontact --pressure 1MPa --estar 100GPa \
+	--max-iterations 1 >early 2>err
+for o in list gsf raw; do
+	fails "pressures that did not converge, as $o" 3 'early: doubtful by its own account: a contact did not converge' \
+		records --field pressure --output $o early
+done
+is 'nor did those written as text' "$(records --field pressure --output text early | grep '^# doubtful')" \
+	'# doubtful: a contact did not converge'
+ok 'heights do not depend on the contact' records --field height --output raw early
 
 # samples FILE: those of a stream, in its order
 samples() {

@@ -102,14 +102,28 @@ static void list_record(struct table_out *t, const struct record *r, long number
 	}
 }
 
+/* Adds why fields of a record may be wrong, by its keys.  Heights do not depend on the
+ * contact. */
+static void add_doubts(struct reasons *doubts, const struct record *r)
+{
+	const char *converged = record_get(r, "converged");
+
+	reasons_add(doubts, record_get(r, "doubtful"));
+	if (converged && strcmp(converged, "no") == 0 &&
+		(r->nfields > 1 || record_find(r, "height") < 0))
+		reasons_add(doubts, "a contact did not converge");
+}
+
 /* Rows of samples and an empty line after each field: gnuplot's matrix layout. */
 static void print_text(const struct record *r)
 {
-	const char *why = record_get(r, "doubtful");
+	struct reasons doubts = { 0 };
 	char text[NUMBER_TEXT];
 
-	if (why)
-		printf("# doubtful: %s\n", why);
+	add_doubts(&doubts, r);
+	if (reasons_text(&doubts))
+		printf("# doubtful: %s\n", reasons_text(&doubts));
+	reasons_free(&doubts);
 	for (int k = 0; k < r->nfields; k++) {
 		const double *x = r->data[k];
 
@@ -262,7 +276,7 @@ static int picks_left(struct source *in)
 static void put_record(struct output *o, struct record *r, struct source *in)
 {
 	o->records++;
-	reasons_add(&o->doubts, record_get(r, "doubtful"));
+	add_doubts(&o->doubts, r);
 	switch (format) {
 	case LIST:
 		list_record(o->table, r, source_count(in));
