@@ -63,6 +63,11 @@ printf 'X_(microns),height [nm]\n10,1\n12,2\n14,3\n' >profile.csv
 surfimport --profile profile.csv >p.nrrd
 is "the units of a profile are those of its headings" "$(heights p.nrrd) $(list dx p.nrrd) $(list ny p.nrrd)" \
 	"1e-09 2e-09 3e-09 2e-06 1"
+printf 'x (mm), height (nm)\n10\t1\n12\t2\n14\t3\n' >profile.csv
+surfimport --profile profile.csv >p.nrrd
+is "headings need not have the separator of the rows" "$(heights p.nrrd) $(list dx p.nrrd)" "1e-09 2e-09 3e-09 0.002"
+printf 'x [mm] height [nm]\n10\t1\n12\t2\n14\t3\n' >profile.csv
+fails "units of headings that cannot be divided" 1 'does not state the unit' surfimport --profile profile.csv
 roughgen --measure --fill a.nrrd >m.tsv
 is "roughgen reads the result" "$(column sz m.tsv)" 5e-06
 

@@ -316,38 +316,52 @@ static void read_rows(struct text *t, char *text)
 	}
 }
 
+/* The separator that makes as many cells of the heading as there are columns, which need
+ * not be that of the rows; '\0' if none does. */
+static char heading_separator(const struct text *t)
+{
+	for (const char *by = (char[]){ t->separator, ';', '\t', ',', '\0' }; *by; by++) {
+		int n = 1;
+
+		for (const char *s = t->header; s && *s; s++)
+			n += *s == *by;
+		if (n == t->columns)
+			return *by;
+	}
+	return '\0';
+}
+
 /* The unit in the heading of a column from its end: "(microns)", "[um]", "in um", "x/mm".
- */
+ * A heading without cells may state a single unit, of all columns. */
 static double unit_of(const struct text *t, int from_end)
 {
-	char *copy, *part, *s, *end;
+	char *copy, *part, *s, *end, by = heading_separator(t);
 	double unit = NAN;
-	char by[2] = { t->separator, '\0' };
-	int n = 0, k = 0;
+	int mixed = 0;
 
 	if (!t->header)
 		return from_end ? NAN : t->unit;
-	copy = xstrdup(t->header);
-	for (part = copy; part; part = strchr(part, *by), part = part ? part + 1 : NULL)
-		n++;
-	for (part = copy; part && k < n - 1 - from_end; k++)
-		part = strchr(part, *by) + 1;
-	if (part && strchr(part, *by))
-		*strchr(part, *by) = '\0';
+	part = copy = xstrdup(t->header);
+	for (int k = t->columns - 1 - from_end; by && k > 0; k--)
+		part = strchr(part, by) + 1;
+	if (by && strchr(part, by))
+		*strchr(part, by) = '\0';
 	/* the last word that is a unit */
-	for (s = part; s && *s; s = end) {
+	for (s = part; *s; s = end) {
+		static const char between[] = " \t,;()[]/_\"";
 		double u;
 
-		s += strspn(s, " \t()[]/_\"");
-		end = s + strcspn(s, " \t()[]/_\"\r\n");
+		s += strspn(s, between);
+		end = s + strcspn(s, between);
 		u = unit_named(s, (size_t)(end - s));
+		mixed |= !by && u != unit && !isnan(u) && !isnan(unit);
 		if (!isnan(u))
 			unit = u;
 		if (*end)
 			end++;
 	}
 	free(copy);
-	return unit;
+	return mixed ? NAN : unit;
 }
 
 /* Positions must be equally spaced: to a thousandth of a step, or to their rounding.
@@ -453,8 +467,8 @@ static void refuse_points(const struct text *t)
 /* 1 if the heading names the columns x, y and z. */
 static int is_named_points(const struct text *t)
 {
-	const char by[2] = { t->separator, '\0' };
-	const char *s = t->header ? t->header : "";
+	const char by[2] = { heading_separator(t), '\0' };
+	const char *s = t->header && *by ? t->header : "";
 
 	for (const char *name = "xyz"; *name; name++, s += *s != '\0') {
 		s += strspn(s, " \"");
