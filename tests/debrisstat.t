@@ -29,6 +29,9 @@ near "the width of the interval is 1.53 shape / sqrt(n)" \
 near "the Kolmogorov-Smirnov distance is small" "$(fit ks_distance 2)" 0 0.001
 is "realisations are counted" "$(fit realisations 2)" 3
 is "particles are counted" "$(fit particles 2)" 3000
+awk 'BEGIN { for (i = 0; i < 3; i++) print i, 1, 10, 1.2 }' | table | debrisstat >fits.tsv
+is "a mean of equal diameters is within its interval" "$(fit mean_diameter 3) $(fit mean_diameter 4)" \
+	"$(fit mean_diameter 2) $(fit mean_diameter 2)"
 debrisstat --diameter 0:200um weibull.tsv >fits.tsv
 rising "leaving out large particles biases the shape" 2.9 "$(fit weibull_shape 2)"
 debrisstat --diameter 0:200um --truncated weibull.tsv >fits.tsv

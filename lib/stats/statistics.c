@@ -536,6 +536,6 @@ struct estimate sample_mean(const struct running *r, double confidence)
 	deviation = sqrt(running_variance(r) / r->n);
 	if (!(mean > 0))
 		return t_interval(mean, deviation, r->n - 1, confidence);
-	e = t_interval(log(mean), deviation / mean, r->n - 1, confidence);
-	return (struct estimate){ mean, exp(e.low), exp(e.high) };
+	e = t_interval(0, deviation / mean, r->n - 1, confidence);
+	return (struct estimate){ mean, mean * exp(e.low), mean * exp(e.high) };
 }
