@@ -86,8 +86,8 @@ head -c $((2 * record)) fields >cut
 fails 'a cut between two records is seen' 1 'the stream ends after record 2' records cut
 cut=$(($(wc -c <signal) - 16 * 70 - 5))
 head -c $cut signal >cut
-fails 'a cut signal is refused' 1 'the signal has no end after 930 frames' bpfilter --order 2 cut
-bpfilter --order 2 cut >passed 2>err
+fails 'a cut signal is refused' 1 'the signal has no end after 930 frames' bpfilter --band 0:5000 --order 2 cut
+bpfilter --band 0:5000 --order 2 cut >passed 2>err
 is 'all complete frames are processed' "$(frames passed 2 | wc -l)" 929 # the last stands in for the end
 fails 'a signal whose generator failed' 1 'the signal has no end' duet passed
 sed '$d' table >cut
@@ -140,8 +140,8 @@ fails 'more samples than an AU header declares' 1 'want 8 bytes of samples, got 
 # Followed on purpose
 { head -c 1500 signal; sleep 0.4; tail -c +1501 signal; } >growing &
 sleep 0.1
-timeout 10 bpfilter --order 2 --follow growing >followed
-bpfilter --order 2 signal >whole
+timeout 10 bpfilter --band 0:5000 --order 2 --follow growing >followed
+bpfilter --band 0:5000 --order 2 signal >whole
 wait
 same 'a signal that is still being written is read to its end' followed whole
 { head -n 6 table; sleep 0.3; tail -n +7 table; } >growing &
@@ -149,7 +149,7 @@ sleep 0.1
 ok 'a table that is still being written is read to its end' timeout 10 sensorsim --duration 100ms --follow growing
 wait
 head -c $cut signal >cut
-ok 'a live signal may stop at any time' sh -c 'cat cut | bpfilter --order 2 --follow >live'
+ok 'a live signal may stop at any time' sh -c 'cat cut | bpfilter --band 0:5000 --order 2 --follow >live'
 ok 'the end mark is written when a live signal stops' records --check live
 
 fails 'a line longer than can be held' 1 'table: line [0-9]*: longer than 100 bytes' \

@@ -19,12 +19,12 @@ END
 lines() {
 	tr '\r' '\n' <"typescript${1:-}" | tr '\033' '\n'
 }
-script -qec 'sh slowly | bpfilter --order 20 >filtered' typescript >/dev/null 2>&1
+script -qec 'sh slowly | bpfilter --band 0:5000 --order 20 >filtered' typescript >/dev/null 2>&1
 like 'a program reports how much it has read' "$(lines)" '^bpfilter: [0-9]* MB, [1-9][0-9]* s$'
 like 'a program erases its progress at the end' "$(lines | grep -v '^$' | grep -v '^Script' | tail -n 1)" '^\[K'
-sh slowly | bpfilter --order 20 >quiet 2>err
+sh slowly | bpfilter --band 0:5000 --order 20 >quiet 2>err
 is 'no progress is written where standard error is no terminal' "$(cat err)" ''
-script -qec 'sh slowly | bpfilter --order 20 | bpfilter --order 30 >twice' typescript >/dev/null 2>&1
+script -qec 'sh slowly | bpfilter --band 0:5000 --order 20 | bpfilter --band 0:5000 --order 30 >twice' typescript >/dev/null 2>&1
 like 'the second program of a pipeline writes a line below the first' "$(lines | tr '\n' '|')" '\[1B|bpfilter: '
 same 'progress does not change the output' filtered quiet
 
