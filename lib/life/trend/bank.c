@@ -404,6 +404,7 @@ static void take(struct bank *b, const struct row *r)
 		b->healed += b->level - damage;
 	b->jumped = 0;
 	b->level = damage;
+	plateau_add(&b->course, b->seen, r->y);
 	b->rows++;
 	weigh(b);
 	breed(b);
@@ -551,6 +552,8 @@ static void shift(struct bank *b, const struct row *r, int repaired)
 	if (!repaired)
 		renew(b, damage, jump * b->unit / (r->t - b->last));
 	b->repairs += repaired;
+	if (repaired)
+		b->renewed = r->t + b->idle;
 	b->jumped = 1;
 	b->counts.shifts++;
 }
@@ -568,6 +571,11 @@ static int is_repaired(const struct bank *b)
 int bank_repaired(const struct bank *b)
 {
 	return b->repairs > 0 || is_repaired(b);
+}
+
+int bank_held(const struct bank *b)
+{
+	return b->n_held;
 }
 
 int bank_stuck(const struct bank *b)
@@ -757,6 +765,7 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
+	b->course = (struct plateau){ 0 }; /* the event explains it */
 	if (event == BANK_REPAIR) {
 		unsettle(b, b->level, 1);
 		b->repairs++;

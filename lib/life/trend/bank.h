@@ -125,6 +125,9 @@ int bank_event(struct bank *b, enum bank_event event);
 /* 1 if the level has fallen at once, and stayed there: a repair. */
 int bank_repaired(const struct bank *b);
 
+/* Rows held back, which no trend predicts. */
+int bank_held(const struct bank *b);
+
 /* 1 if the last eight values or more are equal because the sensor is frozen, but not all
  * values: those of a unit without wear may be.  Nor if half as many have been before:
  * coarse readings of steady wear repeat as often from one step to the next. */

@@ -6,6 +6,7 @@
 #define LIFE_BANK_STATE_H
 
 #include "life/trend/bank.h"
+#include "life/trend/plateau.h"
 #include <math.h>
 
 enum {
@@ -84,6 +85,7 @@ struct bank {
 	double stuck;           /* of them, those since a row that did not repeat */
 	double freed;           /* most of them before such a row */
 	double bred;            /* age at which particles were last drawn */
+	double renewed;         /* time of the last repair, with the idle time */
 	double repairs, healed; /* their number, and the damage that they took back */
 	double freedom[KINDS], keep[KINDS], log_constant[KINDS];
 	double cut; /* square of the largest standardised innovation */
@@ -93,6 +95,7 @@ struct bank {
 	double at[RATES];              /* 1, and each f since the row before */
 	int loaded;                    /* 1: the loads have begun */
 	double loaded_from, loaded_to; /* times */
+	struct plateau course;         /* of the rows taken */
 	int n_held, jumped;            /* 1: the next row shows the level after a jump */
 	int trends, fixed; /* trends in use; those of them that are not particles */
 	struct bank_counts counts;

@@ -1,6 +1,7 @@
 /* passage.c - see passage.h */
 #include "life/trend/passage.h"
 #include "life/trend/bank_state.h"
+#include "life/trend/unrest.h"
 #include "num/deviates.h"
 #include "num/philox.h"
 #include "num/running.h"
@@ -105,7 +106,7 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 struct crossing {
 	double line[LINE]; /* now */
 	double limit;      /* h of the level to be reached */
-	double rounding;   /* sd of h by rounding that is the same in all rows */
+	double common;     /* sd of h by rounding or noise that many rows share */
 	double straight;   /* the distance if the rate of the damage stayed constant */
 	double variance, freedom; /* of the noise, with its correlation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
@@ -137,6 +138,14 @@ static const struct future *future_of(const struct bank_shape *s)
 		return &future[0];
 	return &future[s->n > 0 ? 3 : s->par <= 0 ? 1 : 2];
 }
+
+/* Common to all trends of a bank on their way to a level. */
+struct prospect {
+	double ahead, target; /* time since the last row; damage at the level */
+	double spread;        /* see spread_of() */
+	double noise;         /* variance of a reading, mean of the trends */
+	struct unrest unrest;
+};
 
 /* Variance of the logarithm of the time to the passage between the trends, without those
  * whose regime has changed: such a change is no curve near the coordinate. */
@@ -177,6 +186,26 @@ static double past_bend(
 	return copysign(log1p(fabs(change)), change);
 }
 
+/* The variance of the noise, with its correlation. */
+static double noise_of(const struct bank *b, const struct trend *tr)
+{
+	return (tr->sum + 2 * fmax(0, tr->lagged)) / freedom_of(b, tr);
+}
+
+/* A level at a damage, when this time has passed since the last row. */
+static struct prospect foresee(const struct bank *b, double ahead, double level)
+{
+	struct prospect o = { .ahead = ahead,
+		.target = damage_of(b, level),
+		.unrest = unrest_of(&b->course, b->range) };
+
+	o.spread = spread_of(b, o.target);
+	for (int i = 0; i < b->trends; i++)
+		if (b->trend[i].weight > 0)
+			o.noise += b->trend[i].weight * noise_of(b, &b->trend[i]);
+	return o;
+}
+
 /* How the time to a level strays because the curve of the damage is not known, of which a
  * growth is a part; h: of the present damage; past: see past_bend().  A straight line
  * does not stray, and what the trends leave uncertain is a part of it. */
@@ -215,28 +244,42 @@ static void face_future(const struct bank *b, const struct trend *tr, struct cro
 	p->stray = STUDENT * sqrt(sum);
 }
 
-static struct crossing prepare(const struct bank *b, const struct trend *tr, double ahead,
-	double target, double spread)
+/* The rate will swing as it did; what the trends leave uncertain is a part of it. */
+static void let_swing(const struct bank *b, struct crossing *p, const struct prospect *o)
+{
+	double time = hasten((p->limit - p->line[LINE_H]) / p->line[LINE_V], p->growth);
+
+	if (time > 0 && isfinite(time))
+		p->stray = hypot(p->stray,
+			sqrt(fmax(0, unrest_swing(&o->unrest, time * b->unit, o->noise) -
+					     o->spread)));
+}
+
+static struct crossing prepare(
+	const struct bank *b, const struct trend *tr, const struct prospect *o)
 {
 	struct place here = place_of(b, tr->shape, b->level),
-		     there = place_of(b, tr->shape, target);
+		     there = place_of(b, tr->shape, o->target);
 	double scale;
 	struct crossing p = { .limit = there.h,
-		.rounding = rounding_of(b) / sqrt(12) * there.slope,
-		.straight = (target - b->level) * here.slope,
+		.straight = (o->target - b->level) * here.slope,
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)) };
 
-	p.lasts = (b->age + ahead) / (1 + tr->changes);
-	p.regime = fmax(0, fmin(p.lasts, b->age + ahead - tr->onset));
-	p.repairs = (b->repairs - 1) / (b->age + ahead);
-	p.gain = b->healed / b->repairs / (target - b->level);
+	p.lasts = (b->age + o->ahead) / (1 + tr->changes);
+	p.regime = fmax(0, fmin(p.lasts, b->age + o->ahead - tr->onset));
+	p.repairs = (b->repairs - 1) / (b->age + o->ahead);
+	p.gain = b->healed / b->repairs / (o->target - b->level);
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	face_future(b, tr, &p);
-	advance_state(2, p.line, b->at, advance_of(b, tr, ahead), 1);
-	scale_rates(2, p.line, grown(tr, b->age + ahead));
+	advance_state(2, p.line, b->at, advance_of(b, tr, o->ahead), 1);
+	scale_rates(2, p.line, grown(tr, b->age + o->ahead));
 	p.freedom = freedom_of(b, tr);
-	p.variance = (tr->sum + 2 * fmax(0, tr->lagged)) / p.freedom;
+	p.variance = noise_of(b, tr);
+	p.common = rounding_of(b) / sqrt(12);
+	if (!b->par.steady)
+		p.common = hypot(p.common, sqrt(unrest_common(&o->unrest, p.variance)));
+	p.common *= there.slope;
 	/* The noise is constant in D: its slope is taken half way to the level. */
 	p.wiener =
 		kinds[tr->kind].wander * p.variance * here.slope * there.slope / b->gap;
@@ -244,8 +287,10 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
 	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
-	else if (!b->par.steady) /* the path of another unit is known to its end */
-		let_stray(&p, here.h, past_bend(b, tr, &here, p.line[LINE_V]), spread);
+	else if (!b->par.steady) { /* the path of another unit is known to its end */
+		let_stray(&p, here.h, past_bend(b, tr, &here, p.line[LINE_V]), o->spread);
+		let_swing(b, &p, o);
+	}
 	return p;
 }
 
@@ -322,7 +367,7 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 	if (!(v > 0)) /* damage does not heal */
 		return INFINITY;
 	known = sd * sqrt(fmax(0, x[LINE_HH] - x[LINE_HV] * x[LINE_HV] / x[LINE_VV]));
-	h = x[LINE_H] + sd * x[LINE_HV] / root * z + hypot(known, p->rounding) * c->z[2];
+	h = x[LINE_H] + sd * x[LINE_HV] / root * z + hypot(known, p->common) * c->z[2];
 	time = (p->limit - h) / v;
 	if (time <= 0)
 		return 0;
@@ -350,7 +395,7 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 	double level, double share, double *life)
 {
 	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
-	double target = damage_of(b, level), spread = spread_of(b, target);
+	struct prospect o = foresee(b, ahead, level);
 	double last = INFINITY; /* if the data overflow, no trend has a weight */
 	int drawn = 0;
 
@@ -360,7 +405,7 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 		reached += b->trend[i].weight;
 		if (!(reached * c->n > drawn + 0.5))
 			continue;
-		p = prepare(b, &b->trend[i], ahead, target, spread);
+		p = prepare(b, &b->trend[i], &o);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
 			if (belongs(drawn, share))
 				life[drawn] = last =

@@ -4,7 +4,8 @@
  * their Student-t distribution, and computes the first passage of the level: exact for a
  * straight line, an inverse Gaussian time if the damage is a Wiener process.
  * Beyond the damage that has been reached, the wear may stray from a curved coordinate
- * or a growth of the rate, unless the trends disagree as much already.
+ * or a growth of the rate, unless the trends disagree as much already, and its rate may
+ * swing as it has so far (unrest.h).
  *
  * The regime may change once more, after a time J with P(J > x) = (a / (a + x))^c, where
  * a is its age: see aopf(1), Long-term models, also for the repairs to come and for the
@@ -35,5 +36,4 @@ enum num_status bank_draw(const struct bank *b, const struct bank_chances *chanc
 /* 1 if the damage nearly certainly does not grow in trends with 95 % of the weight, after
  * the rows held back if they are probably a new regime. */
 int bank_recedes(const struct bank *b);
-
 #endif
