@@ -359,6 +359,21 @@ ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 {
 fails "a sensor at its ceiling with noise behind it" 3 "the values have ceased to approach the threshold" aopf -y 1 --lives-only dither.tsv
 awk '{ print $1 "\t" (NR == 1 ? $2 : 1 - $2) }' dither.tsv >floor.tsv
 fails "a sensor at its floor" 3 "the values have ceased to approach the threshold" aopf -y 0 --lives-only floor.tsv
+# lost HOW: readings of straight wear that are lost at row 40, or shifted by a repair
+lost() {
+	awk -v how="$1" 'BEGIN { srand(8); print "t\ty"; for (t = 0; t < 90; t++) {
+		y = t / 100
+		if (t >= 40) y = how == "dead" ? 0 : how == "fading" ? 0.4 * exp((40 - t) / 10) : y - 0.2
+		print t "\t" y + 0.01 * (rand() - 0.5) } }'
+}
+for how in dead fading; do
+	lost $how >lost.tsv
+	fails "a $how sensor with noise behind it" 3 "the values have ceased to approach the threshold" \
+		aopf -y 1 --direction up --lives-only lost.tsv
+done
+is "wear that goes on after a repair" "$(lost repaired | aopf -y 1 --direction up --lives-only 2>&1 >out)" ""
+is "nor does a burst of outliers look like a fall" "$(awk 'BEGIN { srand(8); print "t\ty"; for (t = 0; t < 60; t++)
+	print t "\t" t / 100 + 0.01 * (rand() - 0.5) + (t > 27 && t < 36 ? 0.8 : 0) }' | aopf -y 1 --direction up --lives-only 2>&1 >out)" ""
 # slower RATE: the readings of a unit whose rate is RATE from row 60 on
 slower() {
 	awk -v rate="$1" 'BEGIN { srand(8); print "t\ty"; for (t = 0; t < 90; t++)
@@ -438,8 +453,18 @@ is "a jump of the unit is no failure" "$(column rul_q50 out | tail -1)" nan
 is "not even while it is uncertain, not in one life of twenty" "$(column rul_q05 out | grep -c '^0$')" 0
 rescale 1000 | head -64 >begun.tsv
 fails "a series that ends then" 3 "their unit or the gain may have changed" aopf -y 3 --lives-only begun.tsv
-rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
-is "a jump beyond the threshold is a failure" "$(column rul_q95 out | grep -c '^0$'; cat err)" 38
+rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' >jump.tsv
+fails "a jump beyond the threshold" 3 "the last 40 values are beyond the threshold, but the trend is not" aopf -y 3 --lives-only jump.tsv
+is "a jump beyond the threshold is a failure" "$(aopf -y 3 --lives-only jump.tsv 2>err | column rul_q95 /dev/stdin | grep -c '^0$')" 38
+# Three readings beyond the threshold by their noise: the trend is at 0.95.
+noisy() {
+	awk -v last="$1" 'BEGIN { srand(1); print "t\ty"; for (t = 0; t < last; t++)
+		print t "\t" t / 100 + (t > 92 && t < 96 ? 0.12 : 0.3 * (rand() - 0.5)) }'
+}
+noisy 96 >noisy.tsv
+fails "noise beyond the threshold" 3 "the last 3 values are beyond the threshold, but the trend is not" \
+	aopf -y 1 --lives-only noisy.tsv
+is "a trend beyond the threshold" "$(noisy 130 | aopf -y 1 --lives-only 2>&1 >out)" ""
 rescale 1 | awk 'NR > 60 { $2 -= 1.4 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
 is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat err)" 0
 # Rows at decades of the age: each forecast reaches nine times as far as all rows before it,

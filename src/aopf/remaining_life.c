@@ -133,6 +133,7 @@ struct outlook {
 		long beyond;  /* successive values past the threshold */
 		long healthy; /* values short of it */
 		int failed, alarm;
+		int leapt; /* 1: failed by values that no trend had foreseen */
 		unsigned long lives, left_out, skipped, events, standing;
 	} now;
 };
@@ -482,6 +483,9 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 				      ? now->beyond + 1
 				      : 0;
 	now->failed = now->started && now->beyond >= persist;
+	now->leapt = now->failed &&
+		     (now->leapt || (now->beyond == persist && bank_ready(o->bank) &&
+					    bank_held(o->bank) >= persist));
 	now->healthy += !isnan(in->y) && now->beyond == 0;
 	if (!is_rescaled(o) && !isnan(in->y)) {
 		now->factor = rescaled_add(&now->scale, in->y);
@@ -523,17 +527,33 @@ static int check_direction(const struct outlook *o)
 	return 1;
 }
 
+/* 1 if a life of 0 at all levels says more than the trends do: they foresaw none of the
+ * values beyond the threshold when the unit failed, or do not have it beyond with 95 %.
+ */
+static int failed_alone(const struct outlook *o)
+{
+	return o->now.failed && bank_ready(o->bank) &&
+	       (o->now.leapt || bank_beyond(o->bank, outlook_threshold) < 0.95);
+}
+
+/* Outliers, which the bank leaves out, may have been readings of a sensor that fails. */
+static int has_ceased(const struct outlook *o)
+{
+	return (o->bank && bank_ceased(o->bank)) ||
+	       plateau_reached(&o->now.course, outlook_threshold, -INFINITY, 0);
+}
+
 int outlook_settle(const struct outlook *o)
 {
 	const char *unit = o->unit;
 	unsigned long due;
 	int doubtful = !is_rescaled(o) &&
 		       rescaled_doubtful(&o->now.scale, outlook_threshold),
-	    stuck = o->bank && bank_stuck(o->bank),
-	    stopped = !stuck && plateau_reached(&o->now.course, outlook_threshold),
+	    stuck = o->bank && bank_stuck(o->bank), stopped = !stuck && has_ceased(o),
 	    alternates = rescaled_alternates(&o->now.scale),
+	    alone = !doubtful && !is_rescaled(o) && failed_alone(o),
 	    doubt = check_direction(o) || is_rescaled(o) || doubtful || stuck ||
-		    stopped || alternates;
+		    stopped || alternates || alone;
 
 	if (doubtful)
 		warn("%sno life is predicted after the last rows: their unit or the gain "
@@ -547,6 +567,10 @@ int outlook_settle(const struct outlook *o)
 		warn("%sthe last values are equal: the sensor sticks or is at the end of its "
 		     "range, and the lives continue the wear before",
 			o->prefix);
+	if (alone)
+		warn("%sthe last %ld values are beyond the threshold, but the trend is not: "
+		     "the unit has failed at once, or they are wrong",
+			o->prefix, o->now.beyond);
 	if (stopped)
 		warn("%sthe values have ceased to approach the threshold: the wear rests, or "
 		     "the sensor is at the end of its range",

@@ -293,7 +293,9 @@ static int check_state(
 	if (bank && bank_stuck(bank))
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
-	else if (s->pair && plateau_reached(&s->course, pair_limit(s->pair)))
+	else if (s->pair && s->course.n > 0 &&
+		 ((bank && bank_ceased(bank)) ||
+			 plateau_reached(&s->course, pair_limit(s->pair), -INFINITY, 0)))
 		status = doubt(out, "the gap has ceased to grow",
 			": the wear rests, or the sensor is at the end of its range");
 	if (bank && bank_recedes(bank))

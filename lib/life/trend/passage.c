@@ -321,13 +321,47 @@ static int recedes(const struct bank *b)
 	return sum > 0.95;
 }
 
-int bank_recedes(const struct bank *b)
+/* Whether a bank has a property, after the rows held back if they are probably a new
+ * regime. */
+static int holds(const struct bank *b, int (*property)(const struct bank *))
 {
 	struct bank *other = chance_of_jump(b) > 0.5 ? bank_accepting(b) : NULL;
-	int answer = recedes(other ? other : b);
+	int answer = property(other ? other : b);
 
 	bank_free(other);
 	return answer;
+}
+
+int bank_recedes(const struct bank *b)
+{
+	return holds(b, recedes);
+}
+
+static int has_ceased(const struct bank *b)
+{
+	return plateau_reached(
+		&b->course, b->par.threshold, b->repairs > 0 ? b->renewed : -INFINITY, 1);
+}
+
+int bank_ceased(const struct bank *b)
+{
+	return holds(b, has_ceased);
+}
+
+double bank_beyond(const struct bank *b, double level)
+{
+	struct prospect o = foresee(b, 0, level);
+	double sum = 0;
+
+	for (int i = 0; i < b->trends; i++) {
+		struct crossing p = prepare(b, &b->trend[i], &o);
+		double sd = hypot(sqrt(p.variance * p.line[LINE_HH]), p.common);
+
+		if (b->trend[i].weight > 0)
+			sum += b->trend[i].weight * 0.5 *
+			       erfc((p.limit - p.line[LINE_H]) / (sd * sqrt(2)));
+	}
+	return sum;
 }
 
 /* Time to the passage if the regime changes once more. */

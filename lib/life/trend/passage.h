@@ -36,4 +36,12 @@ enum num_status bank_draw(const struct bank *b, const struct bank_chances *chanc
 /* 1 if the damage nearly certainly does not grow in trends with 95 % of the weight, after
  * the rows held back if they are probably a new regime. */
 int bank_recedes(const struct bank *b);
+/* 1 if the damage has ceased to grow, or has fallen back, after these rows, see
+ * plateau.h. */
+int bank_ceased(const struct bank *b);
+
+/* The probability that the damage is beyond a level, by the trends, which know nothing of
+ * rows held back. */
+double bank_beyond(const struct bank *b, double level);
+
 #endif

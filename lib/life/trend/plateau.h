@@ -5,6 +5,8 @@
  * whose slope does not differ from 0 by two standard errors and, with three of them
  * added, is less than a tenth of the mean rate before.  A ceiling with noise behind it
  * and wear that rests are the same readings, and neither tells when failure will come.
+ * Damage does not heal either: values that fall, or stay low after a fall, have stopped
+ * where those before were on the way.  Outliers look like a fall, for a while.
  */
 #ifndef LIFE_PLATEAU_H
 #define LIFE_PLATEAU_H
@@ -21,7 +23,9 @@ struct plateau {
 };
 
 void plateau_add(struct plateau *p, double t, double y);
-/* 1 if the values have approached the threshold, and have stopped short of it. */
-int plateau_reached(const struct plateau *p, double threshold);
+/* 1 if the values have approached the threshold, and have stopped short of it, on a line
+ * that does not begin before since; clean: there are no outliers among them, so that a
+ * fall counts. */
+int plateau_reached(const struct plateau *p, double threshold, double since, int clean);
 
 #endif
