@@ -478,6 +478,8 @@ two 1 1.3e-5 | awk 'BEGIN { srand(7) } /^[0-9]/ && $2 == 1.3e-5 { $2 += 1e-8 * (
 two 1 1 >one.tsv
 awk '/^[0-9]/ { $2 = 3e-5 - $2 } 1' OFS="\t" one.tsv >closing.tsv
 fails "a ceiling with noise behind it" 3 "the gap has ceased to grow" rwl --threshold-gap 25um --state-error 1e-7 dither.tsv
+awk 'BEGIN { srand(7) } NR > 31 { $2 = 1e-5 + 1e-7 * rand() } 1' OFS="\t" one.tsv >dead.tsv
+fails "a sensor that dies with noise behind it" 3 "the gap has ceased to grow" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate filter dead.tsv
 for how in mean filter; do
 	fails "a gap that closes, $how" 3 "the gap closes: no life ends" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how closing.tsv
 	fails "two pairs in one state, $how" 3 "the values alternate between two courses" rwl --threshold-gap 25um --state-error 1e-7 --wear-rate $how two.tsv
