@@ -5,7 +5,6 @@
 #include "signal/detect/sections.h"
 #include "signal/learn/calibration.h"
 #include "signal/mixture/masks.h"
-#include "signal/mixture/stft.h"
 #include "signal/noise/robust.h"
 #include "signal/noise/tones.h"
 #include "tap.h"
@@ -47,25 +46,6 @@ static void test_shape(enum pulse_shape pulse, const char *name)
 	near(worst_t, 0, 2e-6, "the derivative of a pulse by its arrival is right");
 	near(worst_T, 0, 2e-6, "the derivative of a pulse by its duration is right");
 	shape_free(s);
-}
-
-static void test_stft(void)
-{
-	struct stft *s = stft_new(64, 24);
-	size_t n = 1000, count = stft_frames(s, n) * stft_bins(s);
-	double complex *y = malloc(count * sizeof *y);
-	double x[1000], back[1000], worst = 0;
-
-	for (size_t i = 0; i < n; i++)
-		x[i] = normal(i);
-	stft_forward(s, x, n, y);
-	stft_inverse(s, y, n, back);
-	for (size_t i = 0; i < n; i++)
-		worst = tap_max(worst, fabs(back[i] - x[i]));
-	near(worst, 0, 1e-13, "the STFT and its inverse give the signal back");
-	ok(!stft_new(63, 32) && !stft_new(64, 65), "odd windows and gaps are refused");
-	free(y);
-	stft_free(s);
 }
 
 /* Two pulses apart, delays 2.121 and 4.545 as in section a1: two sources, masks that
@@ -113,6 +93,15 @@ static void test_masks(void)
 	ok(left < 0.1 * energy,
 		"the mask of the first peak keeps the first pulse and drops the second (%.1f dB)",
 		10 * log10(energy / left));
+	for (int i = 0; i < 600; i++)
+		y2[i] = 0.909 * y1[i];
+	ok(masks_find(m, y1, y2, 600, source, &sources) == NUM_OK && sources == 1,
+		"a record and its copy are one source");
+	masks_separate(m, 0, x);
+	left = 0;
+	for (int i = 0; i < 600; i++)
+		left = tap_max(left, fabs(x[i] - y1[i]));
+	near(left, 0, 1e-13, "whose signal is the record");
 	masks_free(m);
 	shape_free(shape);
 }
@@ -368,7 +357,6 @@ int main(void)
 	test_shape(PULSE_SINE, "the table of the sine pulse gives the pulse");
 	test_shape(PULSE_GAUSS, "the table of the Gaussian pulse gives the pulse");
 	test_shape(PULSE_LORENTZ, "the table of the Lorentzian pulse gives the pulse");
-	test_stft();
 	test_masks();
 	test_tones();
 	test_track();

@@ -1,7 +1,8 @@
 /* masks.c - see masks.h */
 #include "signal/mixture/masks.h"
-#include "signal/mixture/histogram.h"
-#include "signal/mixture/stft.h"
+#include "num/fft.h"
+#include "num/room.h"
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,33 +11,43 @@ enum { CELLS = MASKS_CELLS };
 
 struct masks {
 	struct masks_par par;
-	struct stft *stft;
-	size_t bins, top; /* bins 1 .. top are used */
-	double *omega;    /* calibrated frequency of each bin, rad per sample */
+	struct fft *fft;
+	double *hamming, *frame; /* the window; one frame under it, ... */
+	double complex *part;    /* ... and of one source, transformed */
+	size_t bins, top;        /* bins 1 .. top are used */
+	double *omega;           /* calibrated frequency of each bin, rad per sample */
 	struct histogram histogram;
-	size_t n, frames, capacity;
-	double complex *y1, *y2, *part;
+	size_t n, frames, room1, room2, cells;
+	double complex *y1, *y2; /* bins of each frame */
 	int *cell; /* of each point of the plane, -1 outside the histogram */
 };
 
+/* Room for the frames that cover n samples: frame f those from f hop on. */
 static enum num_status reserve(struct masks *m, size_t n)
 {
-	size_t frames = stft_frames(m->stft, n), count = frames * m->bins;
+	size_t window = m->par.window, hop = m->par.hop, count;
 
 	m->n = n;
-	m->frames = frames;
-	if (count <= m->capacity)
-		return NUM_OK;
-	free(m->y1);
-	free(m->y2);
-	free(m->part);
-	free(m->cell);
-	m->y1 = malloc(count * sizeof *m->y1);
-	m->y2 = malloc(count * sizeof *m->y2);
-	m->part = malloc(count * sizeof *m->part);
-	m->cell = malloc(count * sizeof *m->cell);
-	m->capacity = m->y1 && m->y2 && m->part && m->cell ? count : 0;
-	return m->capacity ? NUM_OK : NUM_MEMORY;
+	m->frames = n <= window ? 1 : 1 + (n - window + hop - 1) / hop;
+	count = m->frames * m->bins;
+	return room_for(&m->y1, &m->room1, count, sizeof *m->y1) ||
+			       room_for(&m->y2, &m->room2, count, sizeof *m->y2) ||
+			       room_for(&m->cell, &m->cells, count, sizeof *m->cell)
+		       ? NUM_MEMORY
+		       : NUM_OK;
+}
+
+/* The short-time Fourier transform (3-6) of x, with zeros behind it. */
+static void transform(struct masks *m, const double *x, double complex *y)
+{
+	for (size_t f = 0; f < m->frames; f++) {
+		for (size_t i = 0; i < m->par.window; i++) {
+			size_t at = f * m->par.hop + i;
+
+			m->frame[i] = at < m->n ? x[at] * m->hamming[i] : 0;
+		}
+		fft_forward(m->fft, m->frame, y + f * m->bins);
+	}
 }
 
 /* Phase per sample of delay of one pulse in each bin, weighted as (3-18). */
@@ -53,8 +64,8 @@ static enum num_status calibrate(struct masks *m)
 
 		shape_sample(m->par.shape, t0, T, 0, n, x, NULL, NULL);
 		shape_sample(m->par.shape, t0 + shift, T, 0, n, x + n, NULL, NULL);
-		stft_forward(m->stft, x, n, m->y1);
-		stft_forward(m->stft, x + n, n, m->y2);
+		transform(m, x, m->y1);
+		transform(m, x + n, m->y2);
 		for (size_t i = 0; i < m->frames * m->bins; i++)
 			turn[i % m->bins] += m->y1[i] * conj(m->y2[i]);
 	}
@@ -68,18 +79,21 @@ static enum num_status calibrate(struct masks *m)
 struct masks *masks_new(const struct masks_par *par)
 {
 	struct masks *m = calloc(1, sizeof *m);
+	const size_t w = par->window;
 
 	if (!m)
 		return NULL;
 	m->par = *par;
-	m->stft = stft_new(par->window, par->hop);
-	if (!m->stft) {
-		masks_free(m);
-		return NULL;
-	}
-	m->bins = stft_bins(m->stft);
+	m->bins = w / 2 + 1;
+	m->fft = fft_new(w, 1);
+	m->hamming = fft_alloc(w);
+	m->frame = fft_alloc(w);
+	m->part = fft_alloc_complex(m->bins);
 	m->omega = calloc(m->bins, sizeof *m->omega);
-	if (!m->omega || calibrate(m)) {
+	for (size_t i = 0; m->hamming && i < w; i++)
+		m->hamming[i] = 0.54 - 0.46 * cos(2 * M_PI * (double)i / (double)(w - 1));
+	if (!m->fft || !m->hamming || !m->frame || !m->part || !m->omega ||
+		calibrate(m)) {
 		masks_free(m);
 		return NULL;
 	}
@@ -95,11 +109,13 @@ void masks_free(struct masks *m)
 {
 	if (!m)
 		return;
-	stft_free(m->stft);
+	fft_done(m->fft);
+	fft_free(m->hamming);
+	fft_free(m->frame);
+	fft_free(m->part);
 	free(m->omega);
 	free(m->y1);
 	free(m->y2);
-	free(m->part);
 	free(m->cell);
 	free(m);
 }
@@ -157,22 +173,40 @@ enum num_status masks_find(struct masks *m, const double *y1, const double *y2, 
 {
 	if (reserve(m, n))
 		return NUM_MEMORY;
-	stft_forward(m->stft, y1, n, m->y1);
-	stft_forward(m->stft, y2, n, m->y2);
+	transform(m, y1, m->y1);
+	transform(m, y2, m->y2);
 	fill_histogram(m);
 	*sources = find_peaks(m, source);
 	return NUM_OK;
 }
 
-/* Bin 0 and the bins above the band carry no delay: they go with bin 1 of their frame. */
+/* Bin 0 and the bins above the band carry no delay: they go with bin 1 of their frame.
+ * The frames are added up and divided by the sum of the windows, so that a transform that
+ * is left as it is gives back every sample. */
 void masks_separate(struct masks *m, int k, double *x)
 {
-	for (size_t p = 0; p < m->frames * m->bins; p++) {
-		size_t bin = p % m->bins,
-		       voter = bin < 1 || bin > m->top ? p - bin + 1 : p;
-		int cell = m->cell[voter];
+	const size_t w = m->par.window, hop = m->par.hop;
 
-		m->part[p] = cell >= 0 && m->histogram.owner[cell] == k ? m->y1[p] : 0;
+	memset(x, 0, m->n * sizeof *x);
+	for (size_t f = 0; f < m->frames; f++) {
+		for (size_t bin = 0; bin < m->bins; bin++) {
+			int cell = m->cell[f * m->bins +
+					   (bin < 1 || bin > m->top ? 1 : bin)];
+
+			m->part[bin] = cell >= 0 && m->histogram.owner[cell] == k
+					       ? m->y1[f * m->bins + bin]
+					       : 0;
+		}
+		fft_inverse(m->fft, m->part, m->frame);
+		for (size_t i = 0; i < w && f * hop + i < m->n; i++)
+			x[f * hop + i] += m->frame[i] / (double)w;
 	}
-	stft_inverse(m->stft, m->part, m->n, x);
+	for (size_t i = 0; i < m->n; i++) {
+		double sum = 0;
+
+		for (size_t f = i < w ? 0 : (i - w) / hop + 1;
+			f <= i / hop && f < m->frames; f++)
+			sum += m->hamming[i - f * hop];
+		x[i] /= sum;
+	}
 }

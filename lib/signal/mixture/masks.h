@@ -32,7 +32,9 @@ enum { MASKS_SOURCES_MAX = HISTOGRAM_PEAKS, MASKS_CELLS = HISTOGRAM_CELLS };
 enum { MASKS_BAND = 2 };
 
 struct masks_par {
-	size_t window, hop;          /* samples */
+	/* Of the transform, under a Hamming window, samples: window even, 4 or more;
+	 * 1 <= hop <= window. */
+	size_t window, hop;
 	double duration;             /* of a pulse, samples, 4 or more */
 	double delta_min, delta_max; /* range of the histogram, samples, not empty */
 	double gain_max;             /* attenuation from 0 to this */
