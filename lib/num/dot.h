@@ -55,4 +55,14 @@ static inline double mean_of(const double *x, size_t n)
 	return mean;
 }
 
+/* The largest of n numbers and 0. */
+static inline double largest_of(const double *x, size_t n)
+{
+	double most = 0;
+
+	for (size_t i = 0; i < n; i++)
+		most = x[i] > most ? x[i] : most;
+	return most;
+}
+
 #endif

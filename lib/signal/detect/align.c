@@ -149,17 +149,20 @@ enum num_status align_width(
 {
 	enum { STEPS = 100 };
 	size_t lags = (size_t)most, all = (size_t)(2 * most) + 2;
-	double *r = fft_alloc(2 * (all + 1)), *r2 = r + all + 1, best = -1;
-	enum num_status status = r ? NUM_OK : NUM_MEMORY;
+	double *r, best = -1;
+	enum num_status status;
 
 	*width = 1;
-	if (status == NUM_OK && lags > 1 && all < n)
-		status = correlate(y1, y1, n, all, r);
-	if (status == NUM_OK && lags > 1 && all < n)
-		status = correlate(y2, y2, n, all, r2);
+	if (lags < 2 || all >= n)
+		return NUM_OK;
+	r = fft_alloc(2 * (all + 1));
+	status = r ? correlate(y1, y1, n, all, r) : NUM_MEMORY;
+	if (status == NUM_OK)
+		status = correlate(y2, y2, n, all, r + all + 1);
 	/* from 1/2 to 2 */
-	for (int k = -STEPS; status == NUM_OK && lags > 1 && all < n && k <= STEPS; k++) {
-		double w = exp2((double)k / STEPS), here = likeness(r, r2, lags, w);
+	for (int k = -STEPS; status == NUM_OK && k <= STEPS; k++) {
+		double w = exp2((double)k / STEPS);
+		double here = likeness(r, r + all + 1, lags, w);
 
 		if (here > best) {
 			best = here;

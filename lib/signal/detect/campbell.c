@@ -66,6 +66,18 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 	}
 }
 
+/* The pulse at STEPS samples per duration, as far as it reaches; NULL: no memory. */
+enum { STEPS = 32 };
+static double *sample_pulse(const struct shape *shape, size_t *points)
+{
+	int half = (int)ceil(shape_reach(shape) * STEPS);
+	double *p = calloc(*points = 2 * (size_t)half + 1, sizeof *p);
+
+	if (p)
+		shape_sample(shape, half, STEPS, 0, *points, p, NULL, NULL);
+	return p;
+}
+
 /* Variance of the fourth cumulant, over the fourth power of the second, of a duration of
  * shot noise with 1 / x pulses of one height per duration (x = 0: Gaussian noise).  That
  * of n samples is n / duration times smaller.  It is a polynomial of x, of which the
@@ -79,22 +91,20 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
  * of odd order vanish or compensate). */
 static enum num_status fourth_variance(const struct shape *shape, double coefficient[4])
 {
-	enum { STEPS = 32 };
-	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
-	double *p = calloc((size_t)points, sizeof *p), scale;
+	size_t points;
+	double *p = sample_pulse(shape, &points), scale;
 
 	memset(coefficient, 0, 4 * sizeof *coefficient);
 	if (!p)
 		return NUM_MEMORY;
-	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
-	scale = 1 / sqrt(dot(p, p, (size_t)points) / STEPS);
-	for (int i = 0; i < points; i++)
+	scale = 1 / sqrt(dot(p, p, points) / STEPS);
+	for (size_t i = 0; i < points; i++)
 		p[i] *= scale;
-	for (int lag = 0; lag < points; lag++) {
+	for (size_t lag = 0; lag < points; lag++) {
 		double k11 = 0, k22 = 0, k33 = 0, k44 = 0, k13 = 0, k31 = 0;
 		double weight = (lag ? 2. : 1.) / STEPS;
 
-		for (int i = lag; i < points; i++) {
+		for (size_t i = lag; i < points; i++) {
 			double x = p[i], y = p[i - lag], xy = x * y / STEPS;
 
 			k11 += xy;
@@ -255,16 +265,14 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 /* How far the correlation of the pulse with itself falls below 0 at any lag. */
 static double opposition(const struct shape *shape)
 {
-	enum { STEPS = 32 };
-	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
-	double *p = calloc((size_t)points, sizeof *p), energy, least = 0;
+	size_t points;
+	double *p = sample_pulse(shape, &points), energy, least = 0;
 
 	if (!p)
 		return 1;
-	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
-	energy = dot(p, p, (size_t)points);
-	for (int lag = 1; lag < points; lag++)
-		least = fmin(least, dot(p, p + lag, (size_t)(points - lag)) / energy);
+	energy = dot(p, p, points);
+	for (size_t lag = 1; lag < points; lag++)
+		least = fmin(least, dot(p, p + lag, points - lag) / energy);
 	free(p);
 	return -least;
 }

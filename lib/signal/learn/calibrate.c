@@ -188,16 +188,6 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
  * in measure.c. */
 static const double KNOWN = 0.01;
 
-/* 1 if the noise has less than half of its largest power at the lowest frequencies. */
-static int is_high_passed(const double *power, size_t n)
-{
-	double most = 0;
-
-	for (size_t k = 0; k < n; k++)
-		most = fmax(most, power[k]);
-	return power[0] < 0.5 * most;
-}
-
 /* *lacks: 1 if whitening has made the pulse a known one but a filter has taken its low
  * frequencies; a pulse taken from the record then lacks them. */
 static enum separate_status lacks_low(
@@ -209,7 +199,8 @@ static enum separate_status lacks_low(
 	double left = 1;
 
 	*lacks = 0;
-	if (!is_high_passed(look->noise.power, COLOUR_BINS))
+	/* at the lowest frequencies less than half of the largest power */
+	if (!(look->noise.power[0] < 0.5 * largest_of(look->noise.power, COLOUR_BINS)))
 		return SEPARATE_OK;
 	status = whitening_of_noise(
 		&w, look->noise.power, look->noise.drift, COLOUR_BINS, WHITEN_FILTERED);

@@ -32,7 +32,7 @@ static int smoothing_reach(const struct examples *ex)
  * they have in common and the shape lacks. */
 static void mean_residual(struct examples *ex, double *more, double *weight, int half)
 {
-	double most = 0;
+	double most;
 
 	memset(more, 0, (2 * (size_t)half + 1) * sizeof *more);
 	memset(weight, 0, (2 * (size_t)half + 1) * sizeof *weight);
@@ -47,8 +47,7 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 				more, weight);
 	}
 	/* Far from the pulse few examples contribute. */
-	for (int k = 0; k <= 2 * half; k++)
-		most = fmax(most, weight[k]);
+	most = largest_of(weight, 2 * (size_t)half + 1);
 	for (int k = 0; k <= 2 * half; k++)
 		more[k] *= weight[k] > 0 ? fmin(fmax(2 * weight[k] / most - 0.5, 0), 1) /
 						   weight[k]

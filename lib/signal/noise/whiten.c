@@ -1,5 +1,6 @@
 /* whiten.c - see whiten.h */
 #include "signal/noise/whiten.h"
+#include "num/dot.h"
 #include "num/periodogram.h"
 #include "signal/filter/fir.h"
 #include <math.h>
@@ -136,18 +137,16 @@ static int edge_of_taps(const double *tap, int half)
 static enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
 	double unit, int half, enum whiten_kind kind)
 {
-	double *gain = malloc(2 * n * sizeof *gain), most = 0;
+	double *gain = malloc(2 * n * sizeof *gain);
 	enum num_status status;
 
-	for (size_t k = 0; k < n; k++)
-		most = fmax(most, power[k]);
 	memset(w, 0, sizeof *w);
 	w->half = w->seen_half = half;
 	w->tap = malloc((2 * (size_t)half + 1) * sizeof *w->tap);
 	w->seen = malloc((2 * (size_t)half + 1) * sizeof *w->seen);
-	status = !gain || !w->tap || !w->seen ? NUM_MEMORY
-		 : unit > 0 && most > 0       ? NUM_OK
-					      : NUM_DOMAIN;
+	status = !gain || !w->tap || !w->seen           ? NUM_MEMORY
+		 : unit > 0 && largest_of(power, n) > 0 ? NUM_OK
+							: NUM_DOMAIN;
 	if (!status) {
 		whitening_gains(w, power, n, unit, gain, gain + n);
 		status = taps_of_gain(gain, n, half, w->tap);
@@ -167,14 +166,13 @@ enum num_status whitening_of_noise(struct whitening *w, const double *power, dou
 {
 	enum { FINER = 8 };
 	size_t fine = FINER * (n - 1) + 1, first = 0;
-	double *between = malloc(fine * sizeof *between), most = 0, weakest = INFINITY;
+	double *between = malloc(fine * sizeof *between), weakest = INFINITY;
+	const double most = largest_of(power, n);
 	enum num_status status;
 
 	memset(w, 0, sizeof *w);
 	if (!between)
 		return NUM_MEMORY;
-	for (size_t k = 0; k < n; k++)
-		most = fmax(most, power[k]);
 	if (n > 3 && power[1] < steep * power[3])
 		first = 2;
 	for (size_t k = 0; k < fine; k++) {
@@ -198,10 +196,8 @@ enum num_status whitening_of_noise(struct whitening *w, const double *power, dou
 		between[k] = fmin(between[k] * (1 + drift / (sine * sine)),
 			fmax(between[k], weakest / least_power));
 	}
-	most = 0;
-	for (size_t k = 0; k < fine; k++)
-		most = fmax(most, between[k]);
-	status = whitening_make(w, between, fine, most, (int)(2 * n), kind);
+	status = whitening_make(
+		w, between, fine, largest_of(between, fine), (int)(2 * n), kind);
 	free(between);
 	return status;
 }

@@ -33,12 +33,9 @@ static struct shape *shape_alloc(double reach, int cells)
 	return shape;
 }
 
-/* The cubic of one cell from values and slopes (per cell) at its ends. */
-static void set_cell(
-	struct shape *shape, int cell, double v0, double m0, double v1, double m1)
+/* The cubic c of a cell from values and slopes (per cell) at its ends. */
+static void set_cubic(double c[4], double v0, double m0, double v1, double m1)
 {
-	double *c = shape->cubic + 4 * cell;
-
 	c[0] = v0;
 	c[1] = m0;
 	c[2] = 3 * (v1 - v0) - 2 * m0 - m1;
@@ -85,7 +82,7 @@ struct shape *shape_new(enum pulse_shape pulse)
 		double s0 = (i - half) / (double)STEPS + (i == 0 ? 1e-12 : 0);
 		double s1 = (i + 1 - half) / (double)STEPS - (i == cells - 1 ? 1e-12 : 0);
 
-		set_cell(shape, i, pulse_value(pulse, s0),
+		set_cubic(shape->cubic + 4 * i, pulse_value(pulse, s0),
 			pulse_slope(pulse, s0) * shape->step, pulse_value(pulse, s1),
 			pulse_slope(pulse, s1) * shape->step);
 	}
@@ -114,8 +111,9 @@ struct shape *shape_from_values(const double *value, int half, double reach)
 		double before = i > 0 ? value[i - 1] : 0,
 		       after = i + 2 <= cells ? value[i + 2] : 0;
 
-		set_cell(shape, i, value[i] / peak, (value[i + 1] - before) / (2 * peak),
-			value[i + 1] / peak, (after - value[i]) / (2 * peak));
+		set_cubic(shape->cubic + 4 * i, value[i] / peak,
+			(value[i + 1] - before) / (2 * peak), value[i + 1] / peak,
+			(after - value[i]) / (2 * peak));
 	}
 	shape_integrate(shape);
 	return shape;
@@ -167,7 +165,7 @@ struct shape *shape_filter(
 	for (int i = 0; out && i < 2 * keep; i++) {
 		int k = reach - keep + i;
 
-		set_cell(out, i, value[k], slope[k] / STEPS, value[k + 1],
+		set_cubic(out->cubic + 4 * i, value[k], slope[k] / STEPS, value[k + 1],
 			slope[k + 1] / STEPS);
 	}
 	free(value);
@@ -179,17 +177,14 @@ struct shape *shape_filter(
 /* more at s, between its points by cubic Hermite polynomials with central differences. */
 static double more_at(const double *more, int half, double step, double s)
 {
-	double x = s / step + half, u = x - floor(x), v0, v1, m0, m1;
+	double x = s / step + half, u = x - floor(x), c[4];
 	int k = (int)floor(x);
 
 	if (k < 0 || k >= 2 * half)
 		return 0;
-	v0 = more[k];
-	v1 = more[k + 1];
-	m0 = 0.5 * (v1 - (k > 0 ? more[k - 1] : 0));
-	m1 = 0.5 * ((k + 2 <= 2 * half ? more[k + 2] : 0) - v0);
-	return v0 + u * (m0 + u * (3 * (v1 - v0) - 2 * m0 - m1 +
-					  u * (2 * (v0 - v1) + m0 + m1)));
+	set_cubic(c, more[k], 0.5 * (more[k + 1] - (k > 0 ? more[k - 1] : 0)),
+		more[k + 1], 0.5 * ((k + 2 <= 2 * half ? more[k + 2] : 0) - more[k]));
+	return c[0] + u * (c[1] + u * (c[2] + u * c[3]));
 }
 
 struct shape *shape_correct(
@@ -209,7 +204,7 @@ struct shape *shape_correct(
 
 		for (int k = 0; k < 4; k++)
 			d[k] = more_at(more, half, step, s + (k - 1) * h);
-		set_cell(out, i, c[0] + d[1], c[1] + 0.5 * (d[2] - d[0]),
+		set_cubic(out->cubic + 4 * i, c[0] + d[1], c[1] + 0.5 * (d[2] - d[0]),
 			c[0] + c[1] + c[2] + c[3] + d[2],
 			c[1] + 2 * c[2] + 3 * c[3] + 0.5 * (d[3] - d[1]));
 	}

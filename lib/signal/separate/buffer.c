@@ -1,5 +1,6 @@
 /* buffer.c - see buffer.h */
 #include "signal/separate/buffer.h"
+#include "num/room.h"
 #include "signal/filter/fir.h"
 #include <math.h>
 #include <stdlib.h>
@@ -16,22 +17,10 @@ void buffer_clear(struct buffer *b)
 
 static enum num_status reserve(struct buffer *b, size_t n)
 {
-	size_t capacity = 2 * b->capacity > b->n + n ? 2 * b->capacity : b->n + n;
-	double *more;
-	unsigned char *flags;
-
-	if (b->n + n <= b->capacity)
-		return NUM_OK;
-	more = realloc(b->x, capacity * sizeof *more);
-	if (!more)
-		return NUM_MEMORY;
-	b->x = more;
-	flags = realloc(b->hidden, capacity);
-	if (!flags)
-		return NUM_MEMORY;
-	b->hidden = flags;
-	b->capacity = capacity;
-	return NUM_OK;
+	return room_for(&b->x, &b->room, b->n + n, sizeof *b->x) ||
+			       room_for(&b->hidden, &b->flags, b->n + n, 1)
+		       ? NUM_MEMORY
+		       : NUM_OK;
 }
 
 void buffer_hide(struct buffer *b, size_t i)

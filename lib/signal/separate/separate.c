@@ -76,41 +76,42 @@ double separate_allowed(const struct separate *s)
 	return separate_effort(s, s->counters.samples);
 }
 
-static int is_foreign(
-	const struct separate_counters *c, const struct separate_counters *before)
+/* c + sign times more. */
+static void add_counters(
+	struct separate_counters *c, const struct separate_counters *more, double sign)
 {
-	struct separate_counters own = { .rows = c->rows - before->rows,
-		.unresolved = c->unresolved - before->unresolved,
-		.misfits = c->misfits - before->misfits,
-		.together = c->together - before->together };
-	double misfits;
+	enum { COUNTERS = sizeof *c / sizeof(double) };
+	double a[COUNTERS], b[COUNTERS];
 
-	own.events[SEPARATE_TRANSIENT] =
-		c->events[SEPARATE_TRANSIENT] - before->events[SEPARATE_TRANSIENT];
-	misfits = separate_misfits(&own);
-	return separate_too_many(misfits, separate_tested(&own));
+	memcpy(a, c, sizeof a); /* all members are doubles */
+	memcpy(b, more, sizeof b);
+	for (int i = 0; i < COUNTERS; i++)
+		a[i] += sign * b[i];
+	memcpy(c, a, sizeof a);
+}
+
+static int is_foreign(const struct separate *s)
+{
+	struct separate_counters own = s->counters;
+
+	add_counters(&own, &s->before, -1);
+	return separate_too_many(separate_misfits(&own), separate_tested(&own));
 }
 
 void separate_continue(struct separate *s, const struct separate *last,
 	const struct separate_counters *counted, int foreign)
 {
-	enum { COUNTERS = sizeof s->counters / sizeof(double) };
 	struct separate_counters *c = &s->before;
 	double *in_samples[] = { &c->passed_over, &c->unlearned, &c->samples, &c->active,
 		&c->dense, &c->countless, &c->compared, &c->unlike, &c->covered,
 		&c->missing[0], &c->missing[1] };
-	double a[COUNTERS], b[COUNTERS];
 
 	s->par.effort = 0;
 	s->was_foreign = last->was_foreign || foreign;
 	*c = *counted;
 	for (size_t i = 0; i < sizeof in_samples / sizeof *in_samples; i++)
 		*in_samples[i] *= (double)last->ratio / s->ratio;
-	memcpy(a, &s->counters, sizeof a); /* all members are doubles */
-	memcpy(b, c, sizeof b);
-	for (int i = 0; i < COUNTERS; i++)
-		a[i] += b[i];
-	memcpy(&s->counters, a, sizeof a);
+	add_counters(&s->counters, c, 1);
 	for (int k = 0; k < 2; k++)
 		s->buffer[k].missing += c->missing[k];
 }
@@ -397,7 +398,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (is_foreign(c, &s->before))
+	if (is_foreign(s))
 		return SEPARATE_FOREIGN;
 	if (s->was_foreign)
 		return SEPARATE_CHANGED;
