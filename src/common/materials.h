@@ -2,7 +2,7 @@
 #ifndef MATERIALS_H
 #define MATERIALS_H
 
-#include "signal/pulse/polarisability.h"
+#include "signal/pulse/material.h"
 
 enum { MATERIALS_MIXED = 16 };
 

@@ -1,6 +1,6 @@
 #include "common/non_ferrous.h"
 #include "common/materials.h"
-#include "signal/pulse/classify.h"
+#include "signal/pulse/material.h"
 
 static const char *name;
 static double excitation = 100e3;

@@ -1,7 +1,7 @@
 #include "components.h"
 #include "cli/msg.h"
 #include "common/materials.h"
-#include "signal/pulse/classify.h"
+#include "signal/pulse/material.h"
 #include <math.h>
 
 static double phase, phase_error = M_PI / 90, excitation = 100e3, class_error = 0.01;

@@ -3,7 +3,7 @@
 #define MATERIAL_OPTIONS_H
 
 #include "cli/opt.h"
-#include "signal/pulse/polarisability.h"
+#include "signal/pulse/material.h"
 #include "signal/simulate/passage.h"
 
 extern struct opt material_rows[]; /* for OPT_TABLE */

@@ -42,7 +42,7 @@ struct passage {
 	double radius;   /* distance from the axis of the pipe, m; NAN unknown */
 	double velocity; /* m/s */
 	/* Of its pulse over kappa v d^3, in phase with that of a ferrous particle and a
-	 * quarter of a turn ahead; see polarisability.h.  passage_carry() makes them 1,
+	 * quarter of a turn ahead; see material.h.  passage_carry() makes them 1,
 	 * 0. */
 	double response[2];
 };

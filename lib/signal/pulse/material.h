@@ -1,4 +1,5 @@
-/* polarisability.h - magnetic moment of a conducting sphere in an alternating field
+/* material.h - pulses of spheres of a material: magnetic moment of a conducting sphere in
+ * an alternating field, and ferrous or not by the phase of a pulse
  *
  * A sphere of radius a, relative permeability mu and conductivity sigma in a uniform
  * field H0 exp(i w t) has the moment m = 2 pi a^3 beta H0,
@@ -22,8 +23,8 @@
  * a turn.  The error is below 1e-13 of |beta|, that of the imaginary part below 1e-13 of
  * itself, for a / delta from 1e-8 to 1e8.  SI units.
  */
-#ifndef SIGNAL_POLARISABILITY_H
-#define SIGNAL_POLARISABILITY_H
+#ifndef SIGNAL_MATERIAL_H
+#define SIGNAL_MATERIAL_H
 
 struct polarisability {
 	double re, im;
@@ -47,5 +48,32 @@ const struct material *material_at(int i);
  * mu = INFINITY, sigma = 0. */
 struct polarisability material_response(
 	const struct material *material, double diameter, double frequency);
+
+/* Ferrous or not: a sphere of a material with a pulse as high as that of a ferrous
+ * sphere of a given size has one diameter and one phase.  With a normal error of the
+ * phase, and shares of the materials among pulses of this height,
+ *
+ *	P(ferrous | phase) = F / (F + N)
+ *
+ * by Bayes' rule, F and N the sums of share exp(-(phase - theirs)^2 / (2 se^2)) over the
+ * ferrous materials and over the others.
+ */
+
+/* Permeability high enough for half the pulse of the limit, or more. */
+int classify_is_ferrous(const struct material *material);
+
+/* Diameter of the ferrous sphere whose pulse is as high as that of a sphere of this
+ * material and diameter, and its inverse, by bisection: the height grows with the
+ * diameter.  m, Hz. */
+double classify_equivalent(const struct material *m, double diameter, double frequency);
+double classify_diameter(const struct material *m, double equivalent, double frequency);
+
+/* Probability that a pulse is of a ferrous one of n materials.  size: of the ferrous
+ * sphere with a pulse as high, m; phase in rad, 0: of ferrous spheres without currents;
+ * frequency in Hz.  NAN where the phase is farther than four standard errors from that of
+ * any material, or where size, phase or standard error is not a positive or finite
+ * number. */
+double classify_ferrous(const struct material *const *material, const double *share,
+	int n, double size, double phase, double phase_se, double frequency);
 
 #endif

@@ -1,7 +1,6 @@
 /* The moment of a sphere against golden values, its limits and a solution of the field
  * equation by power series. */
-#include "signal/pulse/polarisability.h"
-#include "signal/pulse/classify.h"
+#include "signal/pulse/material.h"
 #include "tap.h"
 #include <complex.h>
 #include <string.h>
