@@ -125,6 +125,19 @@ enum num_status align_autocorrelation(
 	return status;
 }
 
+double lowest_lag(const double *r, size_t max_lag)
+{
+	size_t low = 1;
+
+	for (size_t k = 2; k <= max_lag; k++) {
+		if (r[k] < r[low])
+			low = k;
+		else if (r[low] < 0 && r[k] > 0.5 * r[low])
+			break;
+	}
+	return low < max_lag && r[low] < 0 ? (double)low : 0;
+}
+
 /* Correlation coefficient of a at lags 1 to most and b at lags w times as long. */
 static double likeness(const double *a, const double *b, size_t most, double w)
 {

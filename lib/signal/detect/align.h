@@ -31,6 +31,10 @@ enum num_status align_elsewhere(const double *y1, const double *y2, size_t n,
 enum num_status align_autocorrelation(
 	const double *y1, const double *y2, size_t n, size_t max_lag, double *r);
 
+/* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
+ * none up to max_lag. */
+double lowest_lag(const double *r, size_t max_lag);
+
 /* *width: of the pulses in y2 over that of those in y1, as that of their autocorrelations
  * up to lag most, which superposition of many hardly changes; 1 if there is none. */
 enum num_status align_width(

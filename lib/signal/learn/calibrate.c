@@ -4,7 +4,6 @@
 #include "signal/learn/calibration.h"
 #include "signal/learn/crosstalk.h"
 #include "signal/learn/find_lines.h"
-#include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include "signal/learn/velocities.h"

@@ -1,6 +1,8 @@
 /* calibration.c - see calibration.h */
 #include "signal/learn/calibration.h"
+#include "signal/detect/align.h"
 #include <math.h>
+#include <stdlib.h>
 
 double calibrate_threshold(double rate, const struct shape *shape, double duration,
 	double gain, double width)
@@ -100,4 +102,52 @@ int calibration_describes(const struct calibration *c)
 int calibration_stands(const struct calibration *c)
 {
 	return calibration_describes(c) && (!c->corrected || c->isolated > 0);
+}
+
+/* *lag: at which the autocorrelation of the pulse is lowest, as a share of its duration.
+ */
+static enum num_status shape_lowest_lag(const struct shape *shape, double *lag)
+{
+	enum { T = 100, LAGS = 100 };
+	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 };
+
+	if (!p)
+		return NUM_MEMORY;
+	shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
+	for (int k = 0; k <= LAGS; k++)
+		for (size_t i = 0; i < n; i++)
+			r[k] += p[i] * p[i + (size_t)k];
+	*lag = lowest_lag(r, LAGS) / T;
+	free(p);
+	return NUM_OK;
+}
+
+enum num_status known_shape_set(struct calibration *c, int pulse)
+{
+	struct shape *plain = shape_new((enum pulse_shape)pulse);
+
+	shape_free(c->shape);
+	c->pulse = pulse;
+	c->measured = 0;
+	c->shape = plain;
+	if (plain && c->reversed)
+		shape_scale(plain, -1);
+	if (plain && c->whitening.tap) {
+		c->shape = shape_filter(plain, fmax(c->duration, SHAPE_SHORTEST),
+			c->whitening.seen, c->whitening.seen_half);
+		shape_free(plain);
+	}
+	return c->shape ? NUM_OK : NUM_MEMORY;
+}
+
+enum num_status known_shape_duration(int pulse, double low, double *duration)
+{
+	struct shape *plain = shape_new((enum pulse_shape)pulse);
+	double lag = NAN;
+	enum num_status status = plain ? shape_lowest_lag(plain, &lag) : NUM_MEMORY;
+
+	*duration = low / lag;
+	shape_free(plain);
+	return status;
 }

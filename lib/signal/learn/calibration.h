@@ -151,6 +151,13 @@ int calibration_describes(const struct calibration *c);
  * pulse may be another one's half, or a group of them. */
 int calibration_stands(const struct calibration *c);
 
+/* *duration: of this pulse of sensor.h if its autocorrelation is lowest at this lag,
+ * samples. */
+enum num_status known_shape_duration(int pulse, double low, double *duration);
+/* Sets the shape of c to this pulse, reversed or not, as filtered by the whitening, at
+ * the present duration. */
+enum num_status known_shape_set(struct calibration *c, int pulse);
+
 /* Removes what the channels have of each other: x1 = y1 + k1 y2, x2 = y2 + k2 y1. */
 void calibration_unmix(const double crosstalk[2], double *x1, double *x2, size_t n);
 

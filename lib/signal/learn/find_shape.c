@@ -2,7 +2,6 @@
 #include "num/sigmas.h"
 #include "signal/learn/crowd.h"
 #include "signal/learn/examples.h"
-#include "signal/learn/known_shape.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -5,7 +5,6 @@
 #include "num/sigmas.h"
 #include "signal/detect/align.h"
 #include "signal/learn/find_lines.h"
-#include "signal/learn/known_shape.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/matched.h"
 #include "signal/noise/following.h"

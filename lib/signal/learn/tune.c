@@ -1,7 +1,6 @@
 /* tune.c - see examples.h */
 #include "num/sigmas.h"
 #include "signal/learn/examples.h"
-#include "signal/learn/known_shape.h"
 #include <math.h>
 
 /* Chi-square above which noise of a suspected colour is not white; half and twice of it

@@ -1,7 +1,6 @@
 /* averaging.c - means of samples, from which pulses of many samples are separated */
 #include "num/dot.h"
 #include "signal/detect/align.h"
-#include "signal/learn/known_shape.h"
 #include "signal/separate/separate_state.h"
 #include <stdint.h>
 #include <stdlib.h>
