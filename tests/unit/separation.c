@@ -128,7 +128,7 @@ static void test_tones(void)
 		x[i] = y1[i] = 0.3 + 0.5 * cos(w[0] * i + 1) + 0.2 * sin(w[1] * i);
 	for (int i = 1000; i < 1400; i++) /* a tenth of the record is something else */
 		x[i] += 3;
-	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL) == TONES_OK, "the tones are fitted");
+	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL) == NUM_OK, "the tones are fitted");
 	tones_remove(x, N, 0, 2, w, 0, c, N, c);
 	for (int i = 0; i < N; i++)
 		worst = tap_max(worst, fabs(x[i] - (i >= 1000 && i < 1400 ? 3 : 0)));
@@ -156,7 +156,7 @@ static void test_track(void)
 	for (int i = 0; i < N; i++)
 		x[i] = y[i] = cos((omega + turn / HOP) * i + 0.5);
 	tones_track_start(&t, 1, &omega, 0, HOP);
-	ok(tones_track_run(&t, x, 0, N, 1) == TONES_OK && t.flat == N,
+	ok(tones_track_run(&t, x, 0, N, 1) == NUM_OK && t.flat == N,
 		"a line is followed to the end");
 	for (int i = 0; i < N; i++)
 		*(i < 2 * HOP ? &early : &late) =
@@ -190,7 +190,7 @@ static void test_sweep(void)
 	for (int i = 0; i < N; i++)
 		x[i] = cos((omega + 0.5 * b * i) * i + 0.5);
 	tones_track_start(&t, 1, &omega, 0, HOP);
-	ok(tones_track_run(&t, x, 0, N, 1) == TONES_OK, "a sweep is followed to the end");
+	ok(tones_track_run(&t, x, 0, N, 1) == NUM_OK, "a sweep is followed to the end");
 	for (int i = 0; i < N; i++)
 		worst = tap_max(worst, fabs(x[i]));
 	near(worst, 0, b * HOP * HOP, "what is left of a sweep is of second order");

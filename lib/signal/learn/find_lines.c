@@ -21,7 +21,7 @@ enum separate_status find_lines_take(
 	const struct calibration *c, double *x, size_t n, struct tones_track *t)
 {
 	tones_track_start(t, c->tones, c->omega, 0, c->tone_hop < n ? c->tone_hop : n);
-	if (tones_track_run(t, x, 0, (long long)n, 1) == TONES_MEMORY)
+	if (tones_track_run(t, x, 0, (long long)n, 1) == NUM_MEMORY)
 		return SEPARATE_MEMORY;
 	return t->fits < t->knots ? SEPARATE_TONES : SEPARATE_OK;
 }
@@ -175,7 +175,7 @@ static enum num_status track_back(
 		reversed[i] = y[n - 1 - i];
 	tones_track_start(&track, tones, omega, 0, hop);
 	if (reversed &&
-		tones_track_run(&track, reversed, 0, (long long)n, 1) == TONES_MEMORY)
+		tones_track_run(&track, reversed, 0, (long long)n, 1) == NUM_MEMORY)
 		status = NUM_MEMORY;
 	memcpy(omega, track.omega, (size_t)tones * sizeof *omega);
 	free(reversed);

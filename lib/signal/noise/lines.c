@@ -55,7 +55,7 @@ const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clea
 		for (size_t i = 0; i < n; i++)
 			y[l->held + i] = x[i * nc + c];
 		if (tones_track_run(&l->track[c], y, l->begin, l->begin + (long long)all,
-			    n < l->hop) != TONES_OK)
+			    n < l->hop) != NUM_OK)
 			return NULL;
 		*clean = (size_t)(l->track[c].flat - l->begin);
 		for (size_t i = 0; i < *clean; i++)

@@ -274,7 +274,7 @@ static double mark_pulse_free(
 	return median;
 }
 
-enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
+enum num_status tones_fit(const double *x, size_t n, double start, int tones,
 	const double *omega, double *coefficient, double *deviation, double *variance)
 {
 	enum { PASSES = 4 };
@@ -285,9 +285,9 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	double *y = calloc(room, sizeof *y); /* x, filled up with zeros */
 	double *rest = malloc(3 * room * sizeof *rest), level = 0;
 	unsigned char *mask = calloc(room, 1);
-	enum tones_status status = !term || !y || !rest || !mask ? TONES_MEMORY
-				   : n > 4 * terms               ? TONES_OK
-								 : TONES_SHORT;
+	enum num_status status = !term || !y || !rest || !mask ? NUM_MEMORY
+				 : n > 4 * terms               ? NUM_OK
+							       : NUM_DOMAIN;
 
 	memset(coefficient, 0, sizeof(double) * terms);
 	if (!status) {
@@ -311,7 +311,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 			memset(mask, 1, n);
 			if (fit_masked(
 				    &basis, term, y, mask, runs, coefficient, variance))
-				status = TONES_SHORT;
+				status = NUM_DOMAIN;
 		}
 	}
 	if (deviation)
@@ -341,13 +341,13 @@ enum num_status tones_confirm(const double *y1, const double *y2, size_t n, doub
 	int *tones, double *omega)
 {
 	double c[2][TERMS_MAX], v[2][TERMS_MAX], d[2];
-	enum tones_status status = TONES_OK;
+	enum num_status status = NUM_OK;
 	int kept = 0;
 
-	for (int i = 0; i < 2 && *tones && status == TONES_OK; i++)
+	for (int i = 0; i < 2 && *tones && status == NUM_OK; i++)
 		status = tones_fit(i ? y2 : y1, n, 0, *tones, omega, c[i], &d[i], v[i]);
-	if (*tones == 0 || status != TONES_OK)
-		return status == TONES_MEMORY ? NUM_MEMORY : NUM_OK;
+	if (*tones == 0 || status != NUM_OK)
+		return status == NUM_MEMORY ? NUM_MEMORY : NUM_OK;
 	for (int k = 0; k < *tones; k++)
 		if (significance(c[0], v[0], d[0], k) * band > CLEAR ||
 			significance(c[1], v[1], d[1], k) * band > CLEAR)
@@ -405,15 +405,15 @@ static void turn_phase(double *coefficient, int k, double angle)
 
 /* Moves on by a knot at index at, whose coefficients are those of x[0 .. to - from) from
  * index from on. */
-static enum tones_status add_knot(
+static enum num_status add_knot(
 	struct tones_track *t, const double *x, long long from, long long to, double at)
 {
 	double *c = t->coefficient[0], fresh[1 + 2 * TONES_MAX];
 	double variance[1 + 2 * TONES_MAX], deviation;
-	enum tones_status status = tones_fit(x, (size_t)(to - from), (double)from - at,
+	enum num_status status = tones_fit(x, (size_t)(to - from), (double)from - at,
 		t->tones, t->omega, fresh, &deviation, variance);
 
-	if (status == TONES_MEMORY)
+	if (status == NUM_MEMORY)
 		return status;
 	for (int k = 0; k < t->tones && t->knots > 0; k++) {
 		turn_phase(c, k, t->omega[k] * (at - t->at));
@@ -423,14 +423,14 @@ static enum tones_status add_knot(
 	t->at = at;
 	if (t->keeps_offset)
 		fresh[0] = 0;
-	t->fits += status == TONES_OK;
-	if (status == TONES_SHORT && t->knots > 0)
+	t->fits += status == NUM_OK;
+	if (status == NUM_DOMAIN && t->knots > 0)
 		memcpy(fresh, c, sizeof fresh);
 	memmove(t->coefficient[1], c, 2 * sizeof fresh);
 	memcpy(c, fresh, sizeof fresh);
 	t->knots++;
 	for (int k = 0; k < t->tones; k++)
-		t->clear[k] = status == TONES_OK &&
+		t->clear[k] = status == NUM_OK &&
 			      significance(c, variance, deviation, k) > CLEAR;
 	for (int k = 1; k <= 2 * t->tones; k++) {
 		double step = c[k] - t->coefficient[1][k];
@@ -440,7 +440,7 @@ static enum tones_status add_knot(
 		t->step += t->knots > 1 ? step * step : 0;
 		t->bend += t->knots > 2 ? bend * bend : 0;
 	}
-	return TONES_OK;
+	return NUM_OK;
 }
 
 /* The frequencies of clear tones become those by which they turned since the last knot,
@@ -466,7 +466,7 @@ static void follow_turn(struct tones_track *t)
 	}
 }
 
-enum tones_status tones_track_run(
+enum num_status tones_track_run(
 	struct tones_track *t, double *x, long long begin, long long end, int ended)
 {
 	while (t->flat < end) {
@@ -474,15 +474,15 @@ enum tones_status tones_track_run(
 		long long from = middle - t->hop, until = middle;
 
 		if (to > end && !ended)
-			return TONES_OK;
+			return NUM_OK;
 		if (to > end) /* the last one describes the rest */
 			to = until = end;
 		from = from > t->flat ? from : t->flat;
 		follow_turn(t);
 		if (add_knot(t, x + (from - begin), from, to,
 			    t->tones ? 0.5 * (double)(from + to) : (double)middle) ==
-			TONES_MEMORY)
-			return TONES_MEMORY;
+			NUM_MEMORY)
+			return NUM_MEMORY;
 		if (t->knots == 1 && until < end)
 			continue; /* which way it changes is not known yet */
 		tones_remove(x + (t->flat - begin), (size_t)(until - t->flat),
@@ -490,7 +490,7 @@ enum tones_status tones_track_run(
 			t->coefficient[t->knots > 1], 0, t->coefficient[0]);
 		t->flat = until;
 	}
-	return TONES_OK;
+	return NUM_OK;
 }
 
 /* Mean of a sum of squares of differences that that many knots more than one give. */

@@ -11,12 +11,6 @@
 
 enum { TONES_MAX = 16, TONES_SIDE = 64 };
 
-enum tones_status {
-	TONES_OK,
-	TONES_MEMORY,
-	TONES_SHORT /* too few samples to resolve the tones */
-};
-
 /* Frequencies, rad per sample, ascending, that exceed the summed periodogram of both
  * channels (n samples each, n >= 1024, Hann window): lines at least 40 times the median
  * of the bins on either side, at most TONES_SIDE, which white noise exceeds with
@@ -30,8 +24,9 @@ enum num_status tones_find(const double *y1, const double *y2, size_t n, int sid
  * with t the index counted from the same origin for all stretches.  Stretches in which
  * the residual is larger than usual are excluded from further passes, so that pulses do
  * not bias it.  *deviation (may be NULL) is the usual root mean square of the residual,
- * variance[k] (may be NULL) that of coefficient k in units of its square. */
-enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
+ * variance[k] (may be NULL) that of coefficient k in units of its square.  NUM_DOMAIN:
+ * too few samples to resolve the tones. */
+enum num_status tones_fit(const double *x, size_t n, double start, int tones,
 	const double *omega, double *coefficient, double *deviation, double *variance);
 
 /* Drops tones that a robust fit does not confirm: a regular train of pulses has lines,
@@ -74,8 +69,8 @@ void tones_track_start(struct tones_track *t, int tones, const double *omega,
 
 /* Subtracts tones, and the offset unless it is kept, from the samples that can be cleaned
  * without those from index end on; all, if the record has ended.  x[0] is the sample of
- * index begin. TONES_MEMORY. */
-enum tones_status tones_track_run(
+ * index begin. NUM_MEMORY. */
+enum num_status tones_track_run(
 	struct tones_track *t, double *x, long long begin, long long end, int ended);
 
 /* Mean square change of a coefficient from knot to knot; INFINITY: not known. */

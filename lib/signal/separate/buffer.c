@@ -139,8 +139,7 @@ static enum num_status clean(struct buffer *b, const struct calibration *c, int 
 
 	b->flat = b->white;
 	if (c->tones > 0) {
-		if (tones_track_run(&b->tones, b->x, b->begin, b->white, ended) !=
-			TONES_OK)
+		if (tones_track_run(&b->tones, b->x, b->begin, b->white, ended) != NUM_OK)
 			return NUM_MEMORY;
 		b->flat = b->tones.flat;
 	}
