@@ -24,28 +24,24 @@ static void measure_pulse(const double *x, size_t n, double *t, double *a)
 static enum separate_status confirm(struct separate *s, const struct channels *y,
 	size_t n, const double *t, int m, enum separate_verdict *verdict)
 {
-	struct joint_result r;
-	int count = 0, taken[JOINT_PULSES_MAX] = { 0 };
-	enum joint_status status;
+	struct account a = { .n = n };
+	int taken[JOINT_PULSES_MAX] = { 0 };
+	enum separate_status status;
 
 	s->scene.max_pulses = s->par.most_pulses;
-	status = joint_fit(
-		s->joint, &s->scene, y->at[0], y->at[1], n, s->pulse, &count, &r);
-	if (status != JOINT_OK)
-		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
-	s->counters.fits++;
-	s->counters.steps += (double)r.steps;
-	s->counters.searches += (double)r.searches;
+	status = separate_fit_window(s, y->at, &a);
+	if (status != SEPARATE_OK)
+		return status;
 	for (int k = 0; k < m; k++) {
 		int best = -1;
 
-		for (int i = 0; i < count; i++)
+		for (int i = 0; i < a.m; i++)
 			if (!taken[i] &&
-				(best < 0 || fabs(s->pulse[i].t - t[k]) <
-						     fabs(s->pulse[best].t - t[k])))
+				(best < 0 || fabs(a.pulse[i].t - t[k]) <
+						     fabs(a.pulse[best].t - t[k])))
 				best = i;
-		verdict[k] = m > 1 || count > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
-		if (best >= 0 && fabs(s->pulse[best].t - t[k]) < s->cal.duration / 4)
+		verdict[k] = m > 1 || a.m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+		if (best >= 0 && fabs(a.pulse[best].t - t[k]) < s->cal.duration / 4)
 			taken[best] = 1;
 		else
 			verdict[k] = SEPARATE_MISFIT;
