@@ -34,10 +34,13 @@ static int describes_each(const struct calibration *c)
 	return calibration_describes(c) && !c->dense;
 }
 
-/* Keeps other in place of c if its pulses describe the record, and better. */
-static int keep_better(struct calibration *c, struct calibration *other)
+/* Keeps other in place of c if it was learned and its pulses describe the record, and
+ * better. */
+static int keep_better(
+	struct calibration *c, struct calibration *other, enum separate_status status)
 {
-	int better = other->penalised < c->penalised && describes_each(other);
+	int better = status == SEPARATE_OK && other->penalised < c->penalised &&
+		     describes_each(other);
 
 	calibration_clear(better ? c : other);
 	if (better)
@@ -174,12 +177,10 @@ static enum separate_status try_fewer_tones(struct look *look, struct calibratio
 	other_look.wide = look->wide;
 	other_look.events = look->found.events;
 	status = attempt(&other_look, &w, &other);
-	if (status != SEPARATE_OK)
-		return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 	other_look.par = par;
-	if (keep_better(c, &other))
+	if (keep_better(c, &other, status))
 		*look = other_look;
-	return SEPARATE_OK;
+	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
 /* Share of its energy in which a whitened pulse may differ from a known one, beside the
@@ -359,19 +360,15 @@ static enum separate_status find_broad(
 		return status;
 	broad = try_velocities(look, v,
 		known ? fmin(all, BROAD_WORK * look->effort->work) : HALF * all, &other);
-	if (broad == SEPARATE_MEMORY) {
-		calibration_clear(c);
-		return broad;
-	}
-	if (known && broad == SEPARATE_OK)
-		keep_better(c, &other);
-	if (known)
+	if (known && broad != SEPARATE_MEMORY) {
+		keep_better(c, &other, broad);
 		return SEPARATE_OK;
+	}
 	calibration_clear(c);
-	if (broad != SEPARATE_OK)
+	if (broad != SEPARATE_OK && broad != SEPARATE_MEMORY)
 		return find(look, c);
 	*c = other;
-	return SEPARATE_OK;
+	return broad;
 }
 
 /* Learns the instrument again with the range of delays of turbulent flow, which is kept
@@ -384,10 +381,7 @@ static enum separate_status try_wide(struct look *look, struct calibration *c)
 	enum separate_status status =
 		find_within(look, 1, (1 + MORE_WORK) * look->effort->work, &other);
 
-	if (status == SEPARATE_OK)
-		keep_better(c, &other);
-	else
-		calibration_clear(&other);
+	keep_better(c, &other, status);
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Uses the pulse found in the record. */
 void find_shape_take(struct calibration *c, struct template *found)
 {
 	shape_free(c->shape);
@@ -121,9 +120,7 @@ static enum separate_status learn_crowd(struct examples *ex, struct calibration 
 	return SEPARATE_OK;
 }
 
-/* Finds the shape that describes some clear examples best, reversed or not, and its
- * approximate duration.
- * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
+/* The lag of the lowest autocorrelation may be hidden by that of a train of pulses.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
  * Where more of the pulses that stand alone are positive, the shape is not reversed: both
  * describe single pulses equally well.  Other durations are tried as the first one
@@ -191,9 +188,7 @@ enum separate_status find_shape_known(struct examples *ex, double low,
  * 708 of 1278 particles rightly; without them it is 425. */
 enum { SINGLES = 3 };
 
-/* Takes the pulse of that single event, of the clearest few, which describes some clear
- * examples best, all of one sign or of both, and at a lower price than that of c.
- * SEPARATE_HARD if there is none. */
+/* The one that describes some clear examples best, all of one sign or of both. */
 enum separate_status find_shape_single(struct examples *ex, struct calibration *c)
 {
 	struct guess best = { .single = -1, .penalised = c->penalised };

@@ -59,9 +59,9 @@ static double try_scatter(struct examples *ex, struct examples *rough, unsigned 
 	return fmax(balance, 0);
 }
 
-/* Scatter of what pulses have of their own; 1 if there is some.  Only events that single
- * pulses do not describe can show it, and only if it explains most of what these leave:
- * pulses of another shape look wider or narrower where they overlap. */
+/* Only events that single pulses do not describe can show scatter, and only if it
+ * explains most of what these leave: pulses of another shape look wider or narrower where
+ * they overlap. */
 int learn_scatter(struct examples *ex, struct calibration *c)
 {
 	struct examples *rough; /* large for a stack */

@@ -6,6 +6,7 @@
 #include "signal/learn/template_state.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Points of a duration on the coarse grid where events are compared. */
 enum { COARSE = 32 };
@@ -27,11 +28,11 @@ static void coarsen(const double *x, size_t n, int q, double *out)
 /* 1 if all samples of [from, to) of the coarse grid are known. */
 static int is_known(const struct search *s, size_t from, size_t to)
 {
+	const size_t q = (size_t)s->q;
+
 	for (int c = 0; c < 2; c++)
-		for (size_t i = from * (size_t)s->q;
-			s->hidden[c] && i < to * (size_t)s->q; i++)
-			if (s->hidden[c][i])
-				return 0;
+		if (s->hidden[c] && memchr(s->hidden[c] + from * q, 1, (to - from) * q))
+			return 0;
 	return 1;
 }
 

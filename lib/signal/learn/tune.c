@@ -45,9 +45,8 @@ static void minimise(struct examples *ex, double *parameter, double step, int ro
 	}
 }
 
-/* Adjusts duration and gain to the least chi-square, unless they are known.  Pieces,
- * which contain parts of pulses, are fitted well by longer pulses, too: in crowds their
- * duration is not believed against the spectrum. */
+/* Pieces, which contain parts of pulses, are fitted well by longer pulses, too: in crowds
+ * their duration is not believed against the spectrum. */
 void tune(struct examples *ex, double step, int rounds)
 {
 	if (isnan(ex->par->duration))
@@ -106,8 +105,8 @@ static int tune_rare(struct examples *ex, chi2_of *of, double before, double ste
 	return 0;
 }
 
-/* Adjusts duration and gain alternately with the pulses of the examples: the closer they
- * are, the smaller a pulse may be without being a misfit of its neighbour. */
+/* The closer duration and gain are, the smaller a pulse may be without being a misfit of
+ * its neighbour. */
 enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 16 };
@@ -152,7 +151,6 @@ static int tune_rest(struct examples *ex, int round)
 	return changed;
 }
 
-/* Adjusts all parameters. */
 enum separate_status tune_all(struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 6 };
