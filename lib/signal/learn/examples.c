@@ -115,7 +115,7 @@ static int may_go_on(struct examples *ex)
 	return ex->status == SEPARATE_OK;
 }
 
-double examples_gain(const struct examples *ex, const struct example *e)
+static double gain_at(const struct examples *ex, const struct example *e)
 {
 	double at = (double)e->begin + 0.5 * (double)e->n;
 
@@ -126,7 +126,7 @@ double examples_gain(const struct examples *ex, const struct example *e)
 static const struct joint_scene *scene_of(struct examples *ex, const struct example *e)
 {
 	ex->present = ex->scene;
-	ex->present.gain = examples_gain(ex, e);
+	ex->present.gain = gain_at(ex, e);
 	for (int c = 0; c < 2; c++) {
 		ex->present.tone_knot[c] = 0.5 * ex->scene.tone_hop -
 					   (double)(e->begin + (c ? ex->shift : 0));
@@ -144,7 +144,7 @@ enum joint_status examples_refine(struct examples *ex, const struct example *e,
 
 double examples_amplitude(const struct examples *ex, const struct example *e, int p)
 {
-	return e->pulse[p / 2].a * (p % 2 ? examples_gain(ex, e) : 1);
+	return e->pulse[p / 2].a * (p % 2 ? gain_at(ex, e) : 1);
 }
 
 void examples_add_residual(const struct examples *ex, const struct example *e, int p,

@@ -100,9 +100,6 @@ void examples_add_residual(const struct examples *ex, const struct example *e, i
  * they are a transit time earlier or later. */
 void examples_crosstalk(struct examples *ex, double share[2]);
 
-/* The gain at one example. */
-double examples_gain(const struct examples *ex, const struct example *e);
-
 int examples_pulses(const struct examples *ex); /* number of them in all */
 /* 1 if the largest number of pulses was found: there may be more. */
 int examples_full(const struct examples *ex);

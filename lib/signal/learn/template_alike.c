@@ -275,10 +275,8 @@ static void orthogonalise(double *base, int rows, double *d, size_t n)
 
 		for (int k = 0; k < i; k++) {
 			const double *b = base + (size_t)k * n;
-			double share = dot(b, x, n);
 
-			for (size_t j = 0; j < n; j++)
-				x[j] -= share * b[j];
+			add_scaled(x, -dot(b, x, n), b, n);
 		}
 		square = dot(x, x, n);
 		for (size_t j = 0; square > 0 && j < n; j++)
