@@ -101,7 +101,7 @@ static void test_masks(void)
 	left = 0;
 	for (int i = 0; i < 600; i++)
 		left = tap_max(left, fabs(x[i] - y1[i]));
-	near(left, 0, 1e-13, "whose signal is the record");
+	near(left, 0, 1e-13, "the STFT and its inverse give the signal back");
 	masks_free(m);
 	shape_free(shape);
 }
