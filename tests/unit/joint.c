@@ -33,6 +33,73 @@ static void add_noise(double *y, unsigned scene, unsigned channel)
 	}
 }
 
+/* Chi-square of the pulses refined in a scene of another duration and gain. */
+static double chi2_of(struct joint *j, const struct joint_scene *scene, double duration,
+	double gain, double y[2][N], const struct joint_pulse pulse[2])
+{
+	struct joint_scene s = *scene;
+	struct joint_pulse found[20];
+	double chi2;
+
+	s.duration *= exp(duration);
+	s.gain *= exp(gain);
+	memcpy(found, pulse, 2 * sizeof *found);
+	joint_adjust(j, &s, y[0], y[1], N, found, 2, &chi2);
+	return chi2;
+}
+
+/* The slopes are those of chi-square with the pulses refined, at a scene that is slightly
+ * wrong, with overlapping pulses, tones and samples that are not known.  Steps of 1e-2
+ * are so long that what the refined pulses leave of chi-square, up to 0.2, does not
+ * count; the errors of third order stay below 5 %. */
+static void test_slopes(struct joint *j, const struct joint_scene *tied)
+{
+	static double y[2][N];
+	static unsigned char hidden[2][N];
+	static const double step = 1e-2;
+	const struct joint_pulse truth[2] = { { .t = 180.3, .delta = 2.121, .a = 40 },
+		{ .t = 240.7, .delta = 4.545, .a = 60 } };
+	struct joint_scene s = *tied;
+	struct joint_slopes slopes = { .gradient = { 0 } };
+	double middle, by[2], bend[2], cross;
+
+	memset(y, 0, sizeof y);
+	for (unsigned i = 0; i < 2; i++) {
+		joint_add(&s, &truth[i], 1, y[0], y[1], N);
+		add_noise(y[i], 700, i);
+		for (int k = 0; k < N; k++)
+			y[i][k] += 5 * sin(0.11 * k + i);
+		memset(hidden[i] + 190, 1, 12);
+		s.hidden[i] = hidden[i];
+	}
+	s.tones = 1;
+	s.omega[0] = 0.11;
+	s.duration *= 0.995;
+	s.gain *= 1.005;
+	middle = chi2_of(j, &s, 0, 0, y, truth);
+	ok(joint_add_slopes(j, &slopes) == 1, "the slopes of a fit of two pulses exist");
+	for (int k = 0; k < 2; k++) {
+		double up = chi2_of(j, &s, k ? 0 : step, k ? step : 0, y, truth);
+		double down = chi2_of(j, &s, k ? 0 : -step, k ? -step : 0, y, truth);
+
+		by[k] = -0.5 * (up - down) / (2 * step);
+		bend[k] = 0.5 * (up - 2 * middle + down) / (step * step);
+		near(slopes.gradient[k], by[k], 0.05 * fabs(by[k]),
+			k ? "half of chi-square falls with the gain by its gradient"
+			  : "half of chi-square falls with the duration by its gradient");
+		near(slopes.curvature[k][k], bend[k], 0.05 * bend[k],
+			"and bends by its curvature");
+	}
+	cross = 0.5 *
+		(chi2_of(j, &s, step, step, y, truth) -
+			chi2_of(j, &s, step, -step, y, truth) -
+			chi2_of(j, &s, -step, step, y, truth) +
+			chi2_of(j, &s, -step, -step, y, truth)) /
+		(4 * step * step);
+	near(slopes.curvature[1][0], cross, 0.05 * sqrt(bend[0] * bend[1]),
+		"also with both together");
+}
+
 /* In laminar flow, one particle is half as fast and one three times as fast as those of
  * delta 0: either is one pulse, and the errors are those stated. */
 static void test_laminar(struct joint *j, const struct joint_scene *tied)
@@ -785,6 +852,7 @@ int main(void)
 	test_wide(j, &s);
 	test_bound(j, &s);
 	test_adjust(j, &s);
+	test_slopes(j, &s);
 	test_noisy(j, &s, 1, 0, 0);
 	test_noisy(j, &s, 2, 0, 0);
 	test_noisy(j, &s, 6, 0, 0);

@@ -159,6 +159,15 @@ enum joint_status joint_adjust(struct joint *joint, const struct joint_scene *sc
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
 	double *chi2);
 
+/* How half of chi-square falls with the logarithms of duration and gain of the scene,
+ * with the pulses fitted again: its gradient, and its curvature, [k][l] with l <= k. */
+enum { JOINT_DURATION, JOINT_GAIN, JOINT_SLOPES };
+struct joint_slopes {
+	double gradient[JOINT_SLOPES], curvature[JOINT_SLOPES][JOINT_SLOPES];
+};
+/* Adds those of the last fit; 0 if its normal matrix is singular: nothing was added. */
+int joint_add_slopes(struct joint *joint, struct joint_slopes *sum);
+
 /* Is pulse i of the last fit two that arrive nearly together?  Odds by the share of the
  * smaller one, for one other arrival per duration; scatter is the standard deviation of
  * the difference of two delays.  All 0 if the normal matrix is singular.  Shares are the

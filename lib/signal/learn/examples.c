@@ -168,10 +168,12 @@ void examples_add_residual(const struct examples *ex, const struct example *e, i
 	}
 }
 
-double examples_chi2(struct examples *ex)
+double examples_chi2(struct examples *ex, struct joint_slopes *slopes)
 {
 	double sum = 0, chi2;
 
+	if (slopes)
+		*slopes = (struct joint_slopes){ .gradient = { 0 } };
 	for (int i = 0; i < ex->count; i++) {
 		struct example *e = &ex->example[i];
 
@@ -183,6 +185,8 @@ double examples_chi2(struct examples *ex)
 		if (note_memory(ex, joint_adjust(ex->joint, scene_of(ex, e), e->y1, e->y2,
 					    e->n, e->trial, e->m, &chi2)) != JOINT_OK)
 			return INFINITY;
+		if (slopes)
+			joint_add_slopes(ex->joint, slopes);
 		sum += chi2;
 	}
 	return sum;

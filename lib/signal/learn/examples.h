@@ -77,8 +77,8 @@ void examples_set_scene(struct examples *ex, const struct calibration *c);
 double examples_fit(struct examples *ex, double misfit);
 
 /* Chi-square of all examples that are no outliers, with their pulses refined under the
- * present scene; INFINITY if one cannot be. */
-double examples_chi2(struct examples *ex);
+ * present scene, and its slopes unless NULL; INFINITY if one cannot be. */
+double examples_chi2(struct examples *ex, struct joint_slopes *slopes);
 /* Keeps the pulses so refined, of the last chi-square, which was finite. */
 void examples_keep(struct examples *ex);
 
@@ -119,8 +119,9 @@ enum separate_status find_shape_single(struct examples *ex, struct calibration *
 
 /* --- tune.c: duration, gain, width and drift of the gain of least chi-square */
 
-/* Adjusts duration and gain of the scene, unless they are known. */
-void tune(struct examples *ex, double step, int rounds);
+/* Adjusts duration and gain of the scene, unless they are known, in so many steps, of at
+ * most so much of their logarithms. */
+void tune(struct examples *ex, double most, int steps);
 /* The same in turn with the pulses of the examples, for the scene and c. */
 enum separate_status tune_pulse(struct examples *ex, struct calibration *c);
 /* The same with all parameters. */

@@ -63,7 +63,7 @@ static enum separate_status try_shape(struct examples *ex, struct guess guess,
 	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	ex->drift = 0;
-	tune(ex, 0.1, 3);
+	tune(ex, 0.2, 5);
 	guess.chi2 = examples_fit(ex, 0.003);
 	if (ex->status != SEPARATE_OK)
 		return ex->status;

@@ -17,44 +17,54 @@ static double to_least(double below, double middle, double above)
 	return fmax(fmin(move, 2), -2);
 }
 
-/* Moves *parameter by a factor to the least chi-square: parabolas through three points
- * on the logarithm, the step shrinking. */
-static void minimise(struct examples *ex, double *parameter, double step, int rounds)
+/* The step to the least of chi-square by its slopes, of the parameters that are not
+ * known, at most so far. */
+static void find_step(const struct joint_slopes *s, const int known[JOINT_SLOPES],
+	double most, double step[JOINT_SLOPES])
 {
-	double middle = examples_chi2(ex);
+	const double *g = s->gradient, h = s->curvature[1][0];
+	const double det = s->curvature[0][0] * s->curvature[1][1] - h * h;
 
-	if (isfinite(middle))
-		examples_keep(ex);
-	for (int round = 0; round < rounds; round++) {
-		double x = *parameter, below, above, move;
+	for (int k = 0; k < JOINT_SLOPES; k++) {
+		const double own = s->curvature[k][k], other = s->curvature[1 - k][1 - k];
 
-		*parameter = x * exp(-step);
-		below = examples_chi2(ex);
-		*parameter = x * exp(step);
-		above = examples_chi2(ex);
-		move = to_least(below, middle, above);
-		*parameter = x * exp(step * move);
-		above = examples_chi2(ex);
-		if (above < middle) {
-			middle = above;
-			examples_keep(ex);
-		} else {
-			*parameter = x;
-		}
-		step /= 3;
+		step[k] = known[k] || !(own > 0) ? 0
+			  : known[1 - k] || !(det > 0)
+				  ? g[k] / own
+				  : (other * g[k] - h * g[1 - k]) / det;
+		step[k] = fmax(fmin(step[k], most), -most);
 	}
 }
 
-/* Pieces, which contain parts of pulses, are fitted well by longer pulses, too: in crowds
- * their duration is not believed against the spectrum. */
-void tune(struct examples *ex, double step, int rounds)
+/* By Newton's method.  Pieces, which contain parts of pulses, are fitted well by longer
+ * pulses, too: in crowds their duration is not believed against the spectrum. */
+void tune(struct examples *ex, double most, int steps)
 {
-	if (isnan(ex->par->duration))
-		minimise(ex, &ex->scene.duration, step, rounds);
+	const int known[] = { !isnan(ex->par->duration), !isnan(ex->par->gain) };
+	struct joint_slopes slopes, next = { .gradient = { 0 } };
+	double least = examples_chi2(ex, &slopes);
+
+	if (isfinite(least))
+		examples_keep(ex);
+	for (int k = 0; k < steps && isfinite(least); k++) {
+		const struct joint_scene before = ex->scene;
+		double step[JOINT_SLOPES], now;
+
+		find_step(&slopes, known, most, step);
+		ex->scene.duration *= exp(step[JOINT_DURATION]);
+		ex->scene.gain *= exp(step[JOINT_GAIN]);
+		now = examples_chi2(ex, k + 1 < steps ? &next : NULL);
+		if (now < least) {
+			least = now;
+			slopes = next;
+			examples_keep(ex);
+		} else {
+			ex->scene = before;
+			most = 0.25 * fmax(fabs(step[0]), fabs(step[1]));
+		}
+	}
 	if (fabs(ex->scene.duration - ex->spectral) > ex->within && ex->within > 0)
 		ex->scene.duration = ex->spectral;
-	if (isnan(ex->par->gain))
-		minimise(ex, &ex->scene.gain, step, rounds);
 }
 
 /* Chi-square with this width.  Mean duration and energy at sensor 2 are kept: duration
@@ -66,7 +76,7 @@ static double chi2_of_width(struct examples *ex, double log_width)
 	ex->scene.width = exp(log_width);
 	ex->scene.duration /= isnan(ex->par->duration) ? change : 1;
 	ex->scene.gain /= isnan(ex->par->gain) ? change : 1;
-	return examples_chi2(ex);
+	return examples_chi2(ex, NULL);
 }
 
 /* Chi-square if the logarithm of the gain changes by this much in what is learned from.
@@ -74,7 +84,7 @@ static double chi2_of_width(struct examples *ex, double log_width)
 static double chi2_of_drift(struct examples *ex, double change)
 {
 	ex->drift = change / (2 * ex->middle);
-	return examples_chi2(ex);
+	return examples_chi2(ex, NULL);
 }
 
 typedef double chi2_of(struct examples *, double);
@@ -119,7 +129,7 @@ enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
 			c->chi2 > HOPELESS)
 			break;
-		tune(ex, step, 2);
+		tune(ex, 2 * step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = ex->scene.duration;
