@@ -324,7 +324,7 @@ static double cost_of(const struct examples *ex, const struct joint_result *resu
 
 /* Finds the pulses of an example: a single negative one, or positive ones, or those of
  * either sign, if there are such, where positive ones do not tolerably describe it. */
-static enum joint_status fit_example(
+static enum joint_status find_pulses(
 	struct examples *ex, struct example *e, struct joint_result *result)
 {
 	const struct joint_scene *scene = scene_of(ex, e);
@@ -336,11 +336,13 @@ static enum joint_status fit_example(
 
 	either.signs = either.max_pulses = 1;
 	e->m = 0;
+	e->either = 1;
 	status = joint_fit(
 		ex->joint, &either, e->y1, e->y2, e->n, e->pulse, &e->m, result);
 	if (status != JOINT_OK || (e->m == 1 && !result->full && e->pulse[0].a < 0))
 		return status;
 	e->m = 0;
+	e->either = 0;
 	status = joint_fit(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
 	if (status != JOINT_OK || !ex->signs || !result->negative ||
 		result->chi2 < CALIBRATE_TOLERABLE * (double)result->dof)
@@ -349,6 +351,7 @@ static enum joint_status fit_example(
 	memcpy(positive, e->pulse, sizeof positive);
 	m = e->m;
 	e->m = 0;
+	e->either = 1;
 	either.max_pulses = scene->max_pulses;
 	status = joint_fit(
 		ex->joint, &either, e->y1, e->y2, e->n, e->pulse, &e->m, result);
@@ -356,7 +359,41 @@ static enum joint_status fit_example(
 		return status;
 	memcpy(e->pulse, positive, sizeof positive);
 	e->m = m;
+	e->either = 0;
 	return joint_refine(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, e->m, result);
+}
+
+/* Notes how an example was fitted. */
+static enum joint_status note_fit(const struct examples *ex, struct example *e,
+	enum joint_status status, const struct joint_result *result)
+{
+	const int describes = status == JOINT_OK && !result->full &&
+			      result->chi2 < CALIBRATE_TOLERABLE * (double)result->dof;
+
+	e->found = describes ? ex->scene.misfit : 0;
+	return status;
+}
+
+/* Finds the pulses of an example, from those that described it before where the
+ * parameters have changed little since.  From those found with a smaller misfit it would
+ * not be seen that fewer describe it as well. */
+static enum joint_status fit_example(
+	struct examples *ex, struct example *e, struct joint_result *result)
+{
+	enum joint_status status;
+
+	if (ex->again && ex->scene.misfit <= e->found) {
+		struct joint_scene scene = *scene_of(ex, e);
+
+		scene.signs = scene.signs || e->either;
+		status = note_fit(ex, e,
+			joint_fit(ex->joint, &scene, e->y1, e->y2, e->n, e->pulse, &e->m,
+				result),
+			result);
+		if (status != JOINT_OK || e->found > 0)
+			return status;
+	}
+	return note_fit(ex, e, find_pulses(ex, e, result), result);
 }
 
 double examples_fit(struct examples *ex, double misfit)

@@ -23,6 +23,8 @@ struct example {
 	struct joint_pulse pulse[EXAMPLE_PULSES];
 	struct joint_pulse trial[EXAMPLE_PULSES]; /* by examples_chi2() */
 	int m;
+	int either;    /* 1: they may be of either sign */
+	double found;  /* misfit with which they were found; 0: they do not describe it */
 	int isolated;  /* 1: hardly longer than one pulse */
 	double merit;  /* large for the clearest */
 	double excess; /* of chi-square over its degrees of freedom */
@@ -43,6 +45,7 @@ struct examples {
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	long shift;                     /* samples by which channel 2 was moved back */
 	int count;
+	int again;  /* 1: fit from the pulses that described the examples before */
 	int pieces; /* 1: some may cut pulses through */
 	/* Duration by the spectrum of the record, and how far from it those that fit may
 	 * be (both 0: it was not used). */

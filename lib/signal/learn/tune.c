@@ -124,7 +124,9 @@ enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 
 	for (int k = 0; k < ROUNDS; k++) {
 		before = c->chi2;
+		ex->again = k > 0;
 		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
+		ex->again = 0;
 		c->penalised = ex->penalised;
 		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
 			c->chi2 > HOPELESS)
