@@ -568,8 +568,8 @@ int outlook_settle(const struct outlook *o)
 		     "range, and the lives continue the wear before",
 			o->prefix);
 	if (alone)
-		warn("%sthe last %ld values are beyond the threshold, but the trend is not: "
-		     "the unit has failed at once, or they are wrong",
+		warn("%sthe last %ld values are beyond the threshold, but the trend may not "
+		     "be: the unit has failed at once, or they are noise",
 			o->prefix, o->now.beyond);
 	if (stopped)
 		warn("%sthe values have ceased to approach the threshold: the wear rests, or "
