@@ -45,26 +45,43 @@ static void test_golden(void)
 	}
 }
 
+static const double radius = 50e-6, conductivity = 1e6;
+
+/* At which the radius is so many skin depths. */
+static double frequency_of(double ratio, double mu)
+{
+	return ratio * ratio / (M_PI * mu0 * mu * conductivity * radius * radius);
+}
+
+/* Largest relative errors of the moment and of its imaginary part. */
+struct errors {
+	double moment, imaginary;
+};
+
+static void compare(struct errors *e, double f, double mu, double complex want)
+{
+	struct polarisability b = sphere_polarisability(radius, f, mu, conductivity);
+
+	e->moment = tap_max(e->moment, cabs(b.re + I * b.im - want) / cabs(want));
+	e->imaginary = tap_max(e->imaginary, fabs(b.im / cimag(want) - 1));
+}
+
 /* Of a / delta up to 4 the series loses e^4 to cancellation, 2e-18 of long doubles. */
 static void test_series(void)
 {
-	double worst = 0, worst_im = 0;
+	struct errors worst = { 0 };
 
 	for (double ratio = 1e-4; ratio < 4; ratio *= 1.7)
 		for (double mu = 1; mu < 2e5; mu *= 7) {
-			double a = 50e-6, sigma = 1e6;
-			double f = ratio * ratio / (M_PI * mu0 * mu * sigma * a * a);
-			double complex want = by_series(a, f, mu, sigma);
-			struct polarisability b = sphere_polarisability(a, f, mu, sigma);
+			double f = frequency_of(ratio, mu);
 
-			worst = tap_max(worst, cabs(b.re + I * b.im - want) / cabs(want));
-			worst_im = tap_max(worst_im, fabs(b.im / cimag(want) - 1));
+			compare(&worst, f, mu, by_series(radius, f, mu, conductivity));
 		}
-	ok(worst < 1e-13,
+	ok(worst.moment < 1e-13,
 		"a series solution of the field equation gives the moment to %.1g",
-		worst);
-	ok(worst_im < 1e-12, "the field equation confirms the imaginary part (%.1g)",
-		worst_im);
+		worst.moment);
+	ok(worst.imaginary < 1e-12,
+		"the field equation confirms the imaginary part (%.1g)", worst.imaginary);
 }
 
 /* Wait's form in long doubles: 1 - x cot x = x^2 / (3 - x^2 / (5 - x^2 / (7 - ...))),
@@ -82,24 +99,20 @@ static double complex by_fraction(double ratio, double mu)
 
 static void test_thin_skin(void)
 {
-	double worst = 0, worst_im = 0;
+	struct errors worst = { 0 };
 
 	for (double ratio = 1; ratio < 1.1e4; ratio *= 1.9)
 		for (double mu = 1; mu < 1.1e5; mu *= 10) {
-			double a = 50e-6, sigma = 1e6;
-			double f = ratio * ratio / (M_PI * mu0 * mu * sigma * a * a);
-			double complex want = by_fraction(ratio, mu);
-			struct polarisability b = sphere_polarisability(a, f, mu, sigma);
+			double f = frequency_of(ratio, mu);
 
-			worst = tap_max(worst, cabs(b.re + I * b.im - want) / cabs(want));
-			worst_im = tap_max(worst_im, fabs(b.im / cimag(want) - 1));
+			compare(&worst, f, mu, by_fraction(ratio, mu));
 		}
-	ok(worst < 1e-12,
+	ok(worst.moment < 1e-12,
 		"up to 1e4 skin depths and mu 1e5 the moment is that of Wait's form (%.1g)",
-		worst);
-	ok(worst_im < 1e-11,
+		worst.moment);
+	ok(worst.imaginary < 1e-11,
 		"the imaginary part of the moment is that of Wait's form (%.1g)",
-		worst_im);
+		worst.imaginary);
 }
 
 static void test_limits(void)
