@@ -28,11 +28,10 @@ static void draw_slopes(struct joint *j, int c, double *const by[JOINT_SLOPES])
 		joint_hide(j, c, 0, j->n, by[k]);
 }
 
-int joint_add_slopes(struct joint *j, struct joint_slopes *out)
+int joint_add_slopes(struct joint *j, struct joint_slopes *sum)
 {
 	const int np = PAR * j->m, nb = 2 * j->basis;
 	double with[JOINT_SLOPES][NPAR] = { { 0 } }, moved[NPAR];
-	struct joint_slopes own = { .gradient = { 0 } };
 
 	if (joint_factorise(j, j->all, j->m) != NUM_OK)
 		return 0;
@@ -43,10 +42,10 @@ int joint_add_slopes(struct joint *j, struct joint_slopes *out)
 		draw_slopes(j, c, by);
 		for (int k = 0; k < JOINT_SLOPES; k++) {
 			joint_along_all(j, c, 0, by[k], j->n, along[k]);
-			own.gradient[k] += dot(by[k], j->e[c], j->n) -
-					   dot(along[k], j->qe[c], (size_t)j->basis);
+			sum->gradient[k] += dot(by[k], j->e[c], j->n) -
+					    dot(along[k], j->qe[c], (size_t)j->basis);
 			for (int l = 0; l <= k; l++)
-				own.curvature[k][l] +=
+				sum->curvature[k][l] +=
 					dot(by[k], by[l], j->n) -
 					dot(along[k], along[l], (size_t)j->basis);
 			for (int x = 0; x < np; x++) {
@@ -62,14 +61,9 @@ int joint_add_slopes(struct joint *j, struct joint_slopes *out)
 	for (int k = 0; k < JOINT_SLOPES; k++) {
 		memcpy(moved, with[k], (size_t)np * sizeof *moved);
 		joint_solve(j, np, moved);
-		own.gradient[k] -= dot(moved, j->gradient, (size_t)np);
+		sum->gradient[k] -= dot(moved, j->gradient, (size_t)np);
 		for (int l = 0; l <= k; l++)
-			own.curvature[k][l] -= dot(moved, with[l], (size_t)np);
-	}
-	for (int k = 0; k < JOINT_SLOPES; k++) {
-		out->gradient[k] += own.gradient[k];
-		for (int l = 0; l <= k; l++)
-			out->curvature[k][l] += own.curvature[k][l];
+			sum->curvature[k][l] -= dot(moved, with[l], (size_t)np);
 	}
 	return 1;
 }
