@@ -6,9 +6,9 @@
  * (they last 100).  Median over the scenes.  BSS-eval would allow any filter of 512 taps
  * as no distortion, longer than the pulses themselves. */
 #include "num/philox.h"
+#include "num/robust.h"
 #include "signal/fit/joint.h"
 #include "signal/mixture/masks.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -20,8 +20,8 @@
  * that chi-square has minima side by side, and every solver sometimes ends in another. */
 #include "num/dot.h"
 #include "num/philox.h"
+#include "num/robust.h"
 #include "signal/fit/joint.h"
-#include "signal/noise/robust.h"
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>

@@ -1,5 +1,6 @@
 /* Parts of the separation: table of the pulse, STFT, masks, tones, lag, peaks, noise */
 #include "num/philox.h"
+#include "num/robust.h"
 #include "signal/detect/align.h"
 #include "signal/detect/count.h"
 #include "signal/detect/sections.h"

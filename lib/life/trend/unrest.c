@@ -1,37 +1,9 @@
 /* unrest.c - see unrest.h */
 #include "life/trend/unrest.h"
-#include "num/select.h"
+#include "num/robust.h"
 #include <math.h>
 
 enum { LEAST = 12 }; /* see "Unrest" in doc/trends.md */
-
-/* Reorders v. */
-static double median(double *v, int n)
-{
-	size_t middle = (size_t)n / 2;
-
-	select_ranks(v, (size_t)n, &middle, 1);
-	return v[middle];
-}
-
-/* The variance of normal deviates v, whatever a few of them are. */
-static double usual_square(double *v, int n)
-{
-	for (int j = 0; j < n; j++)
-		v[j] = fabs(v[j]);
-	return pow(1.4826 * median(v, n), 2);
-}
-
-/* The usual change about the usual one: that of wear which accelerates evenly, or turns
- * once, is none. */
-static double usual_change(double *v, int n)
-{
-	double middle = median(v, n);
-
-	for (int j = 0; j < n; j++)
-		v[j] -= middle;
-	return usual_square(v, n);
-}
 
 /* A Wiener process or a jump takes the means off the line between those at a distance by
  * a square that grows with it, curved wear by one that grows faster, and noise by one
@@ -66,9 +38,11 @@ struct unrest unrest_of(const struct plateau *p, double range)
 			away[j] =
 				off / sqrt(1 + share * share + (1 - share) * (1 - share));
 		}
-		square = usual_square(away, n);
-		u.way[u.n] = median(way, n);
-		u.swing[u.n++] = usual_change(change, n);
+		square = pow(robust_scale(away, (size_t)n), 2);
+		u.way[u.n] = robust_median(way, (size_t)n);
+		/* About the usual change: wear that accelerates evenly, or turns once,
+		 * does not swing. */
+		u.swing[u.n++] = pow(robust_spread(change, (size_t)n), 2);
 		u.common = fmax(u.common, 2 * before - square);
 		before = square;
 	}

@@ -1,7 +1,7 @@
 /* bursts.c - see bursts.h */
 #include "signal/detect/bursts.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 
 /* Differences from which the level of the noise is estimated: 256 give it with a standard

@@ -1,8 +1,8 @@
 /* count.c - see count.h */
 #include "signal/detect/count.h"
 #include "num/parabola.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 

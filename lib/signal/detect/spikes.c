@@ -1,7 +1,7 @@
 /* spikes.c - see spikes.h */
 #include "signal/detect/spikes.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include "signal/pulse/shape.h"
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* bubbles.c - see bubbles.h */
 #include "signal/learn/bubbles.h"
 #include "num/dot.h"
-#include "signal/noise/robust.h"
+#include "num/robust.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* crosstalk.c - see crosstalk.h */
 #include "signal/learn/crosstalk.h"
 #include "num/dot.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

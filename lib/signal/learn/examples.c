@@ -1,10 +1,10 @@
 /* examples.c - see examples.h */
 #include "signal/learn/examples.h"
 #include "num/dot.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
 #include "signal/detect/sections.h"
 #include "signal/learn/crosstalk.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

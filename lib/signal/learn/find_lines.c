@@ -1,7 +1,7 @@
 /* find_lines.c - see find_lines.h */
 #include "signal/learn/find_lines.h"
+#include "num/robust.h"
 #include "num/select.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* matched.c - see matched.h */
 #include "signal/learn/matched.h"
-#include "signal/noise/robust.h"
+#include "num/robust.h"
 #include <math.h>
 #include <stdlib.h>
 

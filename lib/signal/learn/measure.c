@@ -2,6 +2,7 @@
 #include "signal/learn/measure.h"
 #include "num/dot.h"
 #include "num/lesser.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
 #include "signal/detect/align.h"
 #include "signal/learn/find_lines.h"

@@ -4,8 +4,8 @@
 #include "num/dot.h"
 #include "num/lesser.h"
 #include "num/periodogram.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

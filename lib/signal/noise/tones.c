@@ -4,8 +4,8 @@
 #include "num/dot.h"
 #include "num/parabola.h"
 #include "num/periodogram.h"
+#include "num/robust.h"
 #include "num/select.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

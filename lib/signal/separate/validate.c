@@ -1,7 +1,7 @@
 /* validate.c - see validate.h */
 #include "signal/separate/validate.h"
+#include "num/robust.h"
 #include "num/sigmas.h"
-#include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* window.c - one window of a section: the joint fit of its pulses and its goodness */
-#include "signal/noise/robust.h"
+#include "num/robust.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <string.h>
