@@ -229,7 +229,7 @@ extremes-contact: all $(B)/long/exact
 		sed -nEf tests/extremes/rows.sed
 
 lint: all
-	@scripts/lint
+	+@scripts/lint
 
 # Address and undefined-behaviour sanitizers on all default tests, or on the unit tests and
 # the tests of streams and options alone.
@@ -237,9 +237,9 @@ SANITIZED = ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 \
 	$(MAKE) --no-print-directory B=build/asan BIN=build/asan/bin \
 	CFLAGS='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all'
 asan:
-	@$(SANITIZED) check
+	+@$(SANITIZED) check
 asan-quick:
-	@$(SANITIZED) check TESTS='tests/programs.t tests/streams.t tests/tables.t tests/signals.t $$(UNITS)'
+	+@$(SANITIZED) check TESTS='tests/programs.t tests/streams.t tests/tables.t tests/signals.t $$(UNITS)'
 
 # Needs clang; SECONDS for each target.
 SECONDS = 30
