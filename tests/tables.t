@@ -54,6 +54,20 @@ refuse 'commas and blanks' "bad: no column .y. among .*: 'sigconvert --output ta
 refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is truncated' 't\ty\n0\t1\n1\t2'
 refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
 
+# Text that is passed on under one header has one unit.
+printf 'diameter\tt\n1e-4\t1\n' >si
+printf '# units: um s\ndiameter\tt\n100\t1\n' >um
+sed 's/um/mm/' um >mm
+fails 'tables of other units are not joined' 1 "records: mm: units 'mm s', want 'um s' as in the table before" records --join um mm
+fails 'nor is one without units, which are then those of SI' 1 "records: si: units '', want 'um s'" records --join um si
+for p in --join --pretty; do
+	fails "$p: units that change within a table" 1 'input: line 4: the units change' sh -c "cat um mm | records $p"
+	fails "$p: units that end within a table" 1 "input: line 5: the header before has no '# units'" \
+		sh -c "cat um si | records $p"
+	fails "$p: units that begin within a table" 1 'input: line 3: the units change' sh -c "cat si um | records $p"
+done
+is 'tables of equal units are joined' "$(records --join um um | column diameter /dev/stdin | tr '\n' ' ')" '100 100 '
+
 # Lines that say why a table is doubtful: all that differ are quoted, in their order, and passed on.
 reasons() {
 	printf 't\ty\n0\t1\n'

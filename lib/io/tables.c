@@ -38,9 +38,10 @@ struct table_in {
 	char **cell;
 	const char *blanks; /* separator of the cells */
 	int headed;         /* the table has a line of names */
-	int pending;  /* the row read ahead by table_open() has not been returned yet */
-	int stated;   /* units stand between the row before and this line */
-	int unstated; /* a further header came without units */
+	int pending;    /* the row read ahead by table_open() has not been returned yet */
+	int stated;     /* units stand between the row before and this line */
+	int unstated;   /* a further header came without units */
+	int same_units; /* of all rows, see table_same_units() */
 	struct keys keys;       /* of comment lines */
 	struct reasons reasons; /* of the lines "# doubtful:" */
 	table_comment_taker *take;
@@ -96,7 +97,7 @@ static void keep_key(struct table_in *t, char *comment)
 	/* Names and units may be separated by TABs. */
 	value = strcmp(comment, "cmd") ? xstrdup(trim(colon + 1))
 				       : text_escape(trim(colon + 1));
-	if (t->scale && !strcmp(comment, "units") &&
+	if ((t->scale || t->same_units) && !strcmp(comment, "units") &&
 		(!table_key(t, "units") || strcmp(table_key(t, "units"), value) != 0))
 		die(EXIT_RUN, "%s: line %ld: the units change within the table", t->name,
 			t->number);
@@ -437,11 +438,14 @@ static int is_header(const struct table_in *t)
  */
 static void check_units(struct table_in *t)
 {
-	for (int i = 0; t->unstated && t->scale && i < t->ncolumns; i++)
-		if (t->scale[i].factor != 1)
-			die(EXIT_RUN,
-				"%s: line %ld: the header before has no '# units', that of the table before has",
-				t->name, t->number);
+	int doubted = t->same_units && table_key(t, "units");
+
+	for (int i = 0; t->scale && i < t->ncolumns; i++)
+		doubted |= t->scale[i].factor != 1;
+	if (t->unstated && doubted)
+		die(EXIT_RUN,
+			"%s: line %ld: the header before has no '# units', that of the table before has",
+			t->name, t->number);
 	t->stated = t->unstated = 0;
 }
 
@@ -514,6 +518,11 @@ void table_set_scale(struct table_in *t, int column, double scale)
 	}
 	t->scale[column] =
 		(struct scale){ scale, decimal_shift("1", 1, ten) == scale ? ten : 0 };
+}
+
+void table_same_units(struct table_in *t)
+{
+	t->same_units = 1;
 }
 
 double table_positive(const struct table_in *t, int column)

@@ -53,6 +53,8 @@ int table_missing(const struct table_in *t, int column);
 /* From then on table_number() multiplies the cells of the column by scale, and dies at a
  * further "# units:" line with other units. */
 void table_set_scale(struct table_in *t, int column, double scale);
+/* The same for a program that passes the cells on as text, under one header. */
+void table_same_units(struct table_in *t);
 /* The same for numbers above 0, and for integers from least to most; others die. */
 double table_positive(const struct table_in *t, int column);
 long table_whole(const struct table_in *t, int column, double least, double most);

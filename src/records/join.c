@@ -15,7 +15,7 @@ struct head {
 
 struct tables {
 	struct table_out *out; /* NULL before the first header */
-	char *columns;
+	char *columns, *units; /* of the first; units "" where it states none */
 	struct head head;
 };
 
@@ -47,17 +47,23 @@ static void join_table(struct tables *t, struct input *input)
 {
 	struct table_in *in = table_with_comments(input, take_comment, t);
 	char *columns = columns_of(in);
+	const char *units = table_key(in, "units");
 
 	if (!columns)
 		die(EXIT_RUN, "%s: empty, want a stream", table_name(in));
+	table_same_units(in);
 	if (!t->out) {
 		t->columns = columns;
+		t->units = xstrdup(units ? units : "");
 		t->out = table_create(NULL, NULL, NULL, columns);
 		for (int i = 0; i < t->head.n; i++)
 			table_comment(t->out, t->head.key[i], "%s", t->head.value[i]);
 	} else if (strcmp(columns, t->columns) != 0) {
 		die(EXIT_RUN, "%s: columns '%s', want '%s' as in the table before",
 			table_name(in), columns, t->columns);
+	} else if (strcmp(units ? units : "", t->units) != 0) {
+		die(EXIT_RUN, "%s: units '%s', want '%s' as in the table before",
+			table_name(in), units ? units : "", t->units);
 	} else {
 		free(columns);
 	}
@@ -80,6 +86,7 @@ static void end_tables(struct tables *t)
 	free(t->head.key);
 	free(t->head.value);
 	free(t->columns);
+	free(t->units);
 }
 
 static void join_fields(struct fields_out *out, struct input *input, int more)

@@ -71,6 +71,7 @@ void show_pretty(const char *path)
 	int more = table_next(t), n = table_columns(t);
 	int *width = xcalloc((size_t)n, sizeof *width);
 
+	table_same_units(t);
 	for (int k = 0; k < n; k++)
 		width[k] = show_heading(t, k);
 	if (n > 0)
