@@ -78,6 +78,26 @@ wearplot um.tsv >um.svg
 same 'diameters are drawn in micrometres, whatever their unit' m.svg um.svg
 sed '1s/um/in/' um.tsv >in.tsv
 fails 'a unit that is no length is refused' 1 "in.tsv: column 'diameter' is in 'in', want m" wearplot in.tsv
+# What readers of tables accept, and spreadsheets write: a byte order mark, DOS line ends, blanks.
+printf '# units: m 1\ndiameter\tverdict\n1e-4\talone\n2e-4\tmisfit\n' >tabs.tsv
+{ printf '\357\273\277'; sed 's/$/\r/' tabs.tsv; } >dos.tsv
+tr '\t' ' ' <tabs.tsv >blanks.tsv
+for f in tabs dos blanks; do
+	wearplot $f.tsv >$f.svg
+done
+same 'doubtful particles are not counted with DOS line ends' tabs.svg dos.svg
+same 'cells separated by blanks are drawn' tabs.svg blanks.svg
+fails 'units that change within a table' 1 'input: line 5: the units change' sh -c 'cat um.tsv tabs.tsv | wearplot'
+fails 'units that end within a table' 1 "input: line 5: this header has no '# units'" sh -c 'cat um.tsv found.tsv | wearplot'
+fails 'units that begin within a table' 1 'input: line 4: the units change' sh -c 'cat found.tsv um.tsv | wearplot'
+printf 'time1\tdiameter\n0.1\t1e-4\n' >still.tsv
+fails 'particles without amplitudes in a signal' 1 "still.tsv: no column 'amplitude'" wearplot --found still.tsv signal.au
+fails 'particles without diameters beside others' 1 "series.tsv: no column 'diameter'" wearplot --found series.tsv m.tsv
+printf 'time1\ttime2\tamplitude\n0.1\t0.12\t0.1\nnan\tnan\t0.1\n' >lost.tsv
+wearplot --found lost.tsv signal.au >lost.svg 2>err
+sed '$d' lost.tsv >first.tsv
+wearplot --found first.tsv signal.au >first.svg
+same 'particles without times are not marked' first.svg lost.svg
 # 0.4 Hz, of which the header has 1; a level of 2.5 V, at which the end mark, near 0 V, is none
 perl -e 'print "time\tu\n"; printf "%g\t%g\n", 2.5 * $_, 2.5 + 0.001 * ($_ % 2) for 0 .. 99' | sigconvert --rate 0.4 >slow.au
 wearplot slow.au | tr -d '\n' | sed 's/<[^>]*>/ /g' >text
@@ -95,6 +115,7 @@ head -c 3000 signal.au >torn.au
 fails 'a signal that was cut off' 1 '^wearplot: torn.au: ' wearplot torn.au
 sed '$d' truth.tsv >torn.tsv
 fails 'a table that was cut off' 1 '^wearplot: torn.tsv: ' wearplot torn.tsv
+fails 'particles that were cut off' 1 '^wearplot: torn.tsv: ' wearplot --found torn.tsv signal.au
 fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
 fails 'a missing field' 1 'want a field of this list: height, pressure' wearplot --field gap contact.nrrd
 # What is doubtful is drawn, and marked.
