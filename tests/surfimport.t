@@ -335,6 +335,18 @@ for list in points mixed; do
 	near "their positions tell the spacing along x" "$(list dx b.nrrd)" 3e-7 1e-9
 	near "and along y" "$(list dy b.nrrd)" 1e-7 1e-9
 done
+awk '{ print $2 "\t" $1 "\t" $3 }' points.txt >turned.txt
+awk '{ print $3 "\t" $1 "\t" $2 }' points.txt >last.txt
+for list in 'turned:y [um]\tX [um]\tz [m]' 'last:Height [m]\tX [um]\ty [um]'; do
+	{ printf "${list#*:}\n" && cat "${list%:*}.txt"; } >columns.txt
+	surfimport columns.txt >c.nrrd
+	is "columns are found by their names: ${list%:*}" "$? $(list nx c.nrrd) $(list dx c.nrrd) $(heights c.nrrd)" \
+		"0 4 $(list dx b.nrrd) $(heights b.nrrd)"
+done
+{ printf 'n\tX\ty\tz\n' && awk '{ print NR "\t" $1 "\t" $2 "\t" $3 }' points.txt; } >columns.txt
+fails "a column before the points" 1 '4 columns look like points' surfimport --pixel 3umx1um --height-unit 1m columns.txt
+printf 'ncols 3\r\nNODATA_value  -9999 \r\n1 2 3\r\n4 -9999 6\r\n' | surfimport --pixel 1um --height-unit 1m >c.nrrd
+is "the heading of an Arc/Info grid tells the number of missing samples" "$(heights c.nrrd)" '1 2 3 4 nan 6'
 surfimport --pixel 6umx2um --height-unit 1m mixed.txt >c.nrrd
 is "positions without a unit take --pixel" "$? $(list dx c.nrrd) $(heights c.nrrd)" "0 6e-06 $(heights b.nrrd)"
 fails "a pixel of another shape than that of the points" 1 'apart, which no unit makes --pixel' \

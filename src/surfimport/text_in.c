@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* UTF-16, as spreadsheets write it, to bytes: a character beyond Latin-1 becomes '?'. */
 static char *plain(const struct content *c)
@@ -61,6 +62,7 @@ struct text {
 	struct reasons doubts; /* of the comments "# doubtful:" */
 	double width, height;  /* of the surface, m, and the unit of heights, m, of the */
 	double unit;           /* comments that Gwyddion writes; NAN if there are none */
+	double missing;        /* the NODATA_value of an Arc/Info grid, else NAN */
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -189,7 +191,7 @@ static int read_row(struct text *t, char *line)
 			return -1;
 		}
 		look_at(&t->pairs, s, n % 2);
-		keep(t, v);
+		keep(t, v == t->missing ? NAN : v);
 		n++;
 		s = next;
 	}
@@ -236,6 +238,21 @@ static double length_of(const char *s)
 
 	unit += strspn(unit, " ");
 	return v * unit_named(unit, strlen(unit));
+}
+
+/* "NODATA_value  -9999" stands among the headings of an Arc/Info grid. */
+static void read_heading(struct text *t, const char *s)
+{
+	static const char name[] = "nodata_value";
+	const size_t n = sizeof name - 1;
+	char *end;
+	double v;
+
+	if (strncasecmp(s, name, n) != 0)
+		return;
+	v = decimal_parse(s + n + strspn(s + n, " \t"), &end);
+	if (!end[strspn(end, " \t")])
+		t->missing = v;
 }
 
 static void read_comment(struct text *t, const char *s)
@@ -296,6 +313,7 @@ static void read_rows(struct text *t, char *text)
 			free(t->header);
 			t->header = copy;
 			t->header_line = t->line;
+			read_heading(t, copy);
 			continue;
 		}
 		free(copy);
@@ -464,25 +482,42 @@ static void refuse_points(const struct text *t)
 			t->c->name);
 }
 
-/* 1 if the heading names the columns x, y and z. */
-static int is_named_points(const struct text *t)
+/* 1 if the heading names columns x and y; column: these, and the third one. */
+static int named_points(const struct text *t, int column[3])
 {
 	const char by[2] = { heading_separator(t), '\0' };
 	const char *s = t->header && *by ? t->header : "";
 
-	for (const char *name = "xyz"; *name; name++, s += *s != '\0') {
+	column[0] = column[1] = -1;
+	for (int k = 0; *s; k++, s += *s != '\0') {
+		int name;
+
 		s += strspn(s, " \"");
-		if (tolower((unsigned char)*s) != *name || isalnum((unsigned char)s[1]))
-			return 0;
+		name = tolower((unsigned char)*s) - 'x';
+		if ((name == 0 || name == 1) && !isalnum((unsigned char)s[1]))
+			column[name] = k;
 		s += strcspn(s, by);
 	}
-	return 1;
+	column[2] = 3 - column[0] - column[1];
+	return column[0] >= 0 && column[1] >= 0;
+}
+
+/* Puts the columns in the order x, y, z. */
+static void sort_columns(struct text *t, const int column[3])
+{
+	for (double *row = t->value; row < t->value + t->n; row += 3) {
+		double in_order[3];
+
+		for (int k = 0; k < 3; k++)
+			in_order[k] = row[column[k]];
+		memcpy(row, in_order, sizeof in_order);
+	}
 }
 
 /* Points x, y, z of a grid, in any order; 0 if the rows are none. */
-static int points_read(const struct text *t, const struct told *told, struct record *r)
+static int points_read(struct text *t, const struct told *told, struct record *r)
 {
-	int named = is_named_points(t);
+	int column[3], named = named_points(t, column);
 	struct grid g;
 	enum points found;
 	double dx, dy, unit, *z;
@@ -490,6 +525,10 @@ static int points_read(const struct text *t, const struct told *told, struct rec
 
 	if (t->columns < 3)
 		return 0;
+	if (t->columns == 3 && named)
+		sort_columns(t, column);
+	else
+		column[0] = 0, column[1] = 1, column[2] = 2;
 	found = points_find(t->value, n, (size_t)t->columns, &g);
 	if (found == POINTS_FEW && t->columns > 3 && !named) {
 		free(g.at);
@@ -515,14 +554,14 @@ static int points_read(const struct text *t, const struct told *told, struct rec
 			"%s: three columns look like points x, y, z: want a heading of these "
 			"names, or a matrix of heights",
 			t->c->name);
-	dx = g.dx * unit_of(t, 2);
-	dy = g.dy * unit_of(t, 1);
+	dx = g.dx * unit_of(t, 2 - column[0]);
+	dy = g.dy * unit_of(t, 2 - column[1]);
 	if (isnan(dx) && fabs(told->dx * g.dy - told->dy * g.dx) > 1e-3 * told->dy * g.dx)
 		die(EXIT_RUN,
 			"%s: points are %g and %g apart, which no unit makes --pixel %g x %g m",
 			t->c->name, g.dx, g.dy, told->dx, told->dy);
 	settle_pixel(t->c, told, &dx, &dy);
-	unit = settle_unit(t->c, told, unit_of(t, 0));
+	unit = settle_unit(t->c, told, unit_of(t, 2 - column[2]));
 	z = new_heights(t->c, (double)g.nx, (double)g.ny, dx, dy, r);
 	for (size_t i = 0; i < n; i++) {
 		double height = t->value[3 * i + 2];
@@ -563,9 +602,12 @@ static void refuse_positions(const struct text *t)
 
 void text_read(const struct content *c, const struct told *told, struct record *r)
 {
-	struct text t = {
-		.c = c, .separator = ' ', .width = NAN, .height = NAN, .unit = NAN
-	};
+	struct text t = { .c = c,
+		.separator = ' ',
+		.width = NAN,
+		.height = NAN,
+		.unit = NAN,
+		.missing = NAN };
 	char *text = plain(c);
 	double dx, dy, unit, *z;
 
