@@ -79,6 +79,9 @@ fails 'headerless samples of float32' 1 'record 1: samples of up to .*: not litt
 # Heights of float32 near 1, which have possible magnitudes in pairs
 perl -e 'srand 3; print pack "f<*", map { rand() - 0.5 } 1 .. 200' >pairs.raw
 fails 'headerless samples that are pairs of float32' 1 'record 1: the samples look like float32' records --raw 10x10 --pixel 2um pairs.raw
+# Four waves of 120 samples, 82 of whose float64 differ, but most by rounding alone
+perl -e 'print pack "d<*", map { 1e-6 * cos(2 * 3.14159265358979 * (4 * ($_ % 120) / 120)) } 0 .. 5999' >waves.raw
+is 'waves that repeat are no pairs of float32' "$(records -o count --raw 120x50 --pixel 1um waves.raw)" 1
 fails 'headerless samples of the other byte order' 1 'not little-endian float64?' records --raw 2x1 --pixel 2um swapped.raw
 fails 'a pixel of no samples' 2 '--raw and --pixel go together' records --pixel 2um plain.raw
 cat plain.nrrd big.nrrd plain.gsf >three

@@ -2,7 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Occurrence of the lower half in a bitmap, addressed by a multiplicative hash. */
+/* Occurrence of the lower half in a bitmap, addressed by a multiplicative hash.  Numbers
+ * that differ by rounding, such as those of a wave that repeats, are one: 12 bits are
+ * rounding errors of 4096 units. */
 static void add_half(struct magnitudes *m, double x)
 {
 	uint64_t bits;
@@ -11,7 +13,7 @@ static void add_half(struct magnitudes *m, double x)
 
 	memcpy(&bits, &x, sizeof bits);
 	half = (uint32_t)bits;
-	bin = half * 2654435761u >> 24;
+	bin = (half >> 12) * 2654435761u >> 24;
 	m->halves[bin / 64] |= (uint64_t)1 << bin % 64;
 	memcpy(&single, &half, sizeof single);
 	m->halved += half != 0;
