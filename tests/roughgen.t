@@ -157,7 +157,8 @@ roughgen --s-filter 100um --ends crop --stats st iso.nrrd | records >size
 is "--ends crop removes half of the nesting index on all sides" \
 	"$(column nx size) $(column ny size) $(value samples_cropped st)" "86 86 1820"
 for k in 0 1 2; do
-	roughgen --s-filter 0.2mm --ends $k --measure iso.nrrd | tail -n 1 | cut -f 3
+	roughgen --s-filter 0.2mm --ends $k --measure iso.nrrd >order.tsv
+	value sq order.tsv
 done >orders
 is "the regression orders differ at the edge" "$(sort -u orders | wc -l)" 3
 roughgen -n 40 -q 0 --crown 1um | roughgen --crop 2:1:36:38 --form paraboloid --measure >t
@@ -180,6 +181,18 @@ fails "a taper without a spectrum" 2 'requires --spectrum' roughgen --taper none
 fails "a filter without a file" 2 '\--s-filter: applies to a measured' roughgen --s-filter 1um
 fails "an S-filter above the L-filter" 2 'is not below --l-filter' roughgen --s-filter 64um --l-filter 32um iso.nrrd
 fails "an L-filter that leaves nothing" 1 'shorter than a pixel: no height is left' roughgen --l-filter 1nm iso.nrrd
+# Heights that alternate: half of the amplitude should pass an index of two samples; by the
+# weights 1 and exp(-pi^2 / (4 ln 2)) of a sample and its neighbours 0.89 does.
+perl -e 'print pack("d<", $_ % 2 ? 1e-6 : -1e-6) for 1 .. 64' >zigzag.f64
+passed() { roughgen --raw 64x1 --pixel 1um --ends periodic --s-filter "$1" --measure zigzag.f64 >zigzag.tsv 2>err; }
+passed 2um
+near "a filter of two samples passes more than its index states" "$(value sq zigzag.tsv | awk '{ print $1 * 1e6 }')" \
+	"$(awk 'BEGIN { b = exp(-atan2(0, -1) ^ 2 / 4 / log(2)); print (1 - 2 * b) / (1 + 2 * b) }')" 1e-5
+is "a warning states it" "$(cat err)" 'roughgen: --s-filter 2e-06 m is less than five samples: of waves of two samples 39 % more pass than it states'
+passed 5um
+is "a filter of five samples gives none" "$(cat err)" ""
+passed 0.1um
+is "a filter far below a sample does nothing, as stated" "$(cat err)" 'roughgen: --s-filter 1e-07 m is shorter than a pixel and does nothing'
 roughgen --l-filter 2mm iso.nrrd 2>err >long.nrrd
 is "a filter longer than the surface gives a warning" "$(grep -c 'longer than the surface' err)" 1
 

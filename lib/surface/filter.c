@@ -1,6 +1,7 @@
 #include "surface/filter.h"
 #include "num/fft.h"
 #include "num/status.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,6 +184,26 @@ enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double
 	free(ky.weight);
 	free(half);
 	return status;
+}
+
+enum num_status surface_gauss_excess(
+	double step, double nesting, enum filter_ends ends, double *excess)
+{
+	double a = width(ends) * nesting / step, x = M_PI * a * a / 4;
+	struct kernel k = { 0 };
+
+	*excess = 0;
+	if (nesting > 6 * step) /* 2^-9 of these waves pass at most */
+		return NUM_OK;
+	if (kernel_make(&k, INT_MAX, step, nesting,
+		    ends == FILTER_PERIODIC ? FILTER_MEAN : ends))
+		return NUM_MEMORY;
+	point_weights(&k, k.reach, k.reach);
+	for (int j = 0; j <= 2 * k.reach; j++)
+		*excess += (j - k.reach) % 2 ? -k.row[j] : k.row[j];
+	*excess -= (ends == FILTER_PARABOLA ? 1 + x : 1) * exp(-x);
+	free(k.weight);
+	return NUM_OK;
 }
 
 double surface_gauss_products(

@@ -25,6 +25,12 @@ enum filter_ends {
 enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double *z,
 	double nesting, enum filter_ends ends, double *out);
 
+/* By how much of their amplitude waves of two samples pass a filter more than its index
+ * states, which of all waves are those that pass most in excess: the weights are those of
+ * a Gaussian at the samples, too few of which lie on a narrow one. */
+enum num_status surface_gauss_excess(
+	double step, double nesting, enum filter_ends ends, double *excess);
+
 /* Number of products in the sums of a filter: its work. */
 double surface_gauss_products(
 	int nx, int ny, double dx, double dy, double nesting, enum filter_ends ends);

@@ -166,7 +166,10 @@ static void filter_heights(const char *word, double nesting, int high, struct re
 	enum filter_ends how = ends == ENDS_CROP       ? FILTER_MEAN
 			       : ends == ENDS_PERIODIC ? FILTER_PERIODIC
 						       : (enum filter_ends)ends;
-	double side = fmin(s->nx * s->dx, s->ny * s->dy), *z = s->data[0];
+	double side = fmin(s->nx > 1 ? s->nx * s->dx : INFINITY,
+		s->ny > 1 ? s->ny * s->dy : INFINITY);
+	double step = fmax(s->nx > 1 ? s->dx : 0, s->ny > 1 ? s->dy : 0), excess = 0;
+	double *z = s->data[0];
 	size_t n = (size_t)s->nx * (size_t)s->ny;
 	double *smooth;
 
@@ -177,6 +180,12 @@ static void filter_heights(const char *word, double nesting, int high, struct re
 			word, nesting);
 	if (!high && nesting < fmax(s->dx, s->dy))
 		warn("--%s %g m is shorter than a pixel and does nothing", word, nesting);
+	else if (step > 0)
+		need_memory(surface_gauss_excess(step, nesting, how, &excess));
+	if (excess > 0.02) /* 0.013 with five samples */
+		warn("--%s %g m is less than five samples: of waves of two samples %.0f %% "
+		     "more pass than it states",
+			word, nesting, 100 * excess);
 	if (nesting > side)
 		warn("--%s %g m is longer than the surface, %g m", word, nesting, side);
 	smooth = xcalloc(n, sizeof *smooth);
