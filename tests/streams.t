@@ -84,6 +84,12 @@ perl -e 'print pack "d<*", map { 1e-6 * cos(2 * 3.14159265358979 * (4 * ($_ % 12
 is 'waves that repeat are no pairs of float32' "$(records -o count --raw 120x50 --pixel 1um waves.raw)" 1
 fails 'headerless samples of the other byte order' 1 'not little-endian float64?' records --raw 2x1 --pixel 2um swapped.raw
 fails 'a pixel of no samples' 2 '--raw and --pixel go together' records --pixel 2um plain.raw
+# Keys of records that other programs write
+for k in 'boundary PERIODIC free or periodic' 'converged No yes or no' 'hardness 5GPa a number' 'estar 1e11x a number'; do
+	set -- $k
+	{ header "$1:=$2"; ramp; } >key.nrrd
+	fails "a key $1 that cannot be read" 1 "record 1: key $1 is '$2', want ${k#* * }" records key.nrrd
+done
 cat plain.nrrd big.nrrd plain.gsf >three
 is 'records of three formats may follow each other' "$(records -o count three)" 3
 ok 'an empty stream has no records' sh -c 'records -o count </dev/null'

@@ -9,6 +9,7 @@
 #include "io/magnitudes.h"
 #include "io/nrrd.h"
 #include "io/reasons.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -160,6 +161,32 @@ static void check_mark(const struct fields_in *in, struct mark before)
 			in->at.name, in->at.record, want, mark->number);
 }
 
+/* Keys that programs compute with.  A value that they cannot read would be none to them:
+ * a contact that states '5 GPa' would have no hardness. */
+static void check_keys(const struct place *at, const struct record *r)
+{
+	static const char *const numbers[] = { "approach", "crown", "estar", "hardness",
+		"mean_pressure", "sq", "step", NULL };
+	static const char *const words[][3] = { { "boundary", "free", "periodic" },
+		{ "converged", "yes", "no" } };
+
+	for (int i = 0; numbers[i]; i++) {
+		const char *value = record_get(r, numbers[i]);
+
+		if (value && strcmp(value, "nan") != 0 &&
+			isnan(record_get_number(r, numbers[i])))
+			die(EXIT_RUN, "%s: record %ld: key %s is '%.40s', want a number",
+				at->name, at->record, numbers[i], value);
+	}
+	for (int i = 0; i < 2; i++) {
+		const char *const *word = words[i], *value = record_get(r, word[0]);
+
+		if (value && strcmp(value, word[1]) != 0 && strcmp(value, word[2]) != 0)
+			die(EXIT_RUN, "%s: record %ld: key %s is '%.40s', want %s or %s",
+				at->name, at->record, word[0], value, word[1], word[2]);
+	}
+}
+
 static void read_record(struct fields_in *in, struct record *r)
 {
 	struct mark before = in->at.mark;
@@ -173,6 +200,7 @@ static void read_record(struct fields_in *in, struct record *r)
 		read_formatted(in, r);
 	in->unmarked += in->at.mark.number == 0;
 	check_mark(in, before);
+	check_keys(&in->at, r);
 	input_whole(in->at.in, in->at.mark.last);
 }
 
