@@ -87,6 +87,9 @@ for f in tabs dos blanks; do
 done
 same 'doubtful particles are not counted with DOS line ends' tabs.svg dos.svg
 same 'cells separated by blanks are drawn' tabs.svg blanks.svg
+printf '#units:\tum\t1 \ndiameter\tverdict\n100\talone\n200\tmisfit\n' >blank.tsv
+wearplot blank.tsv >blank.svg
+same 'units between other blanks are read' tabs.svg blank.svg
 fails 'units that change within a table' 1 'input: line 5: the units change' sh -c 'cat um.tsv tabs.tsv | wearplot'
 fails 'units that end within a table' 1 "input: line 5: this header has no '# units'" sh -c 'cat um.tsv found.tsv | wearplot'
 fails 'units that begin within a table' 1 'input: line 4: the units change' sh -c 'cat found.tsv um.tsv | wearplot'
