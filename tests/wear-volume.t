@@ -22,6 +22,9 @@ is 'the units are those of a state' "$(sed -n 's/^# units: //p' volume.tsv)" 's 
 wear-volume --period 2s --time-scale 3600 crowd.tsv >volume.tsv 2>err
 is 'period and time scale determine the times' "$(column t volume.tsv | tr '\n' ' ')$(spheres volume.tsv)" \
 	"7200 14400 2.000000 42.000000 "
+wear-volume --period 6s crowd.tsv >volume.tsv 2>err
+is 'a period that is longer than the record has no row, as a line says' "$(spheres volume.tsv) $(sed -n '/period/p' err)" \
+	" wear-volume: crowd.tsv: no period of 6 s is complete: the last particle is at 5.5 s"
 ok 'the table has its end mark' records --check volume.tsv
 printf '# units: ms um\ntime1\tdiameter\n500\t1000\n1500\t1000\n' >um.tsv
 wear-volume um.tsv >volume.tsv

@@ -128,6 +128,9 @@ static long sum_rows(struct table_in *t, struct table_out *out)
 		put_until(out, time, volume, &rows, &end);
 		volume += volume_of(t, &c, v, &without);
 	}
+	if (rows == 0 && part >= 0)
+		warn("%s: no period of %g s is complete: the last particle is at %g s",
+			table_name(t), period, before);
 	stats_set("rows", (double)rows);
 	stats_set("particles_without_diameter", (double)without);
 	if (without > 0)
