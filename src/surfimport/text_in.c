@@ -525,7 +525,7 @@ static int points_read(struct text *t, const struct told *told, struct record *r
 
 	if (t->columns < 3)
 		return 0;
-	if (t->columns == 3 && named)
+	if (t->columns == 3 && named && column[0] < 3 && column[1] < 3)
 		sort_columns(t, column);
 	else
 		column[0] = 0, column[1] = 1, column[2] = 2;
