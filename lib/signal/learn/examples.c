@@ -374,15 +374,18 @@ static enum joint_status note_fit(const struct examples *ex, struct example *e,
 	return status;
 }
 
-/* Finds the pulses of an example, from those that described it before where the
- * parameters have changed little since.  From those found with a smaller misfit it would
- * not be seen that fewer describe it as well. */
+/* Finds the pulses of an example as ex->by states, from those that described it before
+ * where these are known.  From those found with a smaller misfit it would not be seen
+ * that fewer describe it as well. */
 static enum joint_status fit_example(
 	struct examples *ex, struct example *e, struct joint_result *result)
 {
+	struct joint_result first = { .chi2 = INFINITY };
+	struct example before = *e;
+	int described = 0;
 	enum joint_status status;
 
-	if (ex->again && ex->scene.misfit <= e->found) {
+	if (ex->by != EXAMPLES_ANEW && ex->scene.misfit <= e->found) {
 		struct joint_scene scene = *scene_of(ex, e);
 
 		scene.signs = scene.signs || e->either;
@@ -390,10 +393,19 @@ static enum joint_status fit_example(
 			joint_fit(ex->joint, &scene, e->y1, e->y2, e->n, e->pulse, &e->m,
 				result),
 			result);
-		if (status != JOINT_OK || e->found > 0)
+		described = e->found > 0;
+		if (status != JOINT_OK || (described && ex->by == EXAMPLES_AGAIN))
 			return status;
+		first = *result;
+		before = *e;
 	}
-	return note_fit(ex, e, find_pulses(ex, e, result), result);
+	status = note_fit(ex, e, find_pulses(ex, e, result), result);
+	if (status == JOINT_OK && described &&
+		cost_of(ex, &first, before.m) <= cost_of(ex, result, e->m)) {
+		*result = first;
+		*e = before;
+	}
+	return status;
 }
 
 double examples_fit(struct examples *ex, double misfit)

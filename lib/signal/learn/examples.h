@@ -45,7 +45,9 @@ struct examples {
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	long shift;                     /* samples by which channel 2 was moved back */
 	int count;
-	int again;  /* 1: fit from the pulses that described the examples before */
+	/* How examples_fit() finds the pulses: anew, from those that described the
+	 * examples before, or by the better of both. */
+	enum { EXAMPLES_ANEW, EXAMPLES_AGAIN, EXAMPLES_BETTER } by;
 	int pieces; /* 1: some may cut pulses through */
 	/* Duration by the spectrum of the record, and how far from it those that fit may
 	 * be (both 0: it was not used). */

@@ -116,17 +116,16 @@ static int tune_rare(struct examples *ex, chi2_of *of, double before, double ste
 }
 
 /* The closer duration and gain are, the smaller a pulse may be without being a misfit of
- * its neighbour. */
+ * its neighbour.  Pulses kept from round to round may stay where others describe the
+ * examples better: the last round also finds them anew. */
 enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 16 };
-	double step = 0.01, moved, before;
+	double step = 0.01, misfit = 0.01, moved, before;
 
 	for (int k = 0; k < ROUNDS; k++) {
 		before = c->chi2;
-		ex->again = k > 0;
-		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
-		ex->again = 0;
+		c->chi2 = examples_fit(ex, fmax(misfit, ex->share));
 		c->penalised = ex->penalised;
 		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
 			c->chi2 > HOPELESS)
@@ -146,9 +145,16 @@ enum separate_status tune_pulse(struct examples *ex, struct calibration *c)
 			(examples_full(ex) || (c->chi2 > 10 && c->chi2 > 0.8 * before)))
 			break; /* too dense, or other pulses: no use */
 		if (k > 2 && moved < 5e-4 &&
-			(calibration_describes(c) || c->chi2 > 0.95 * before))
-			break;
+			(calibration_describes(c) || c->chi2 > 0.95 * before)) {
+			if (ex->by == EXAMPLES_BETTER)
+				break;
+			ex->by = EXAMPLES_BETTER;
+		} else {
+			ex->by = EXAMPLES_AGAIN;
+			misfit *= 0.3;
+		}
 	}
+	ex->by = EXAMPLES_ANEW;
 	return SEPARATE_OK;
 }
 
