@@ -113,14 +113,16 @@ int examples_full(const struct examples *ex);
 
 /* Uses the pulse found in the record, whose shape c then owns. */
 void find_shape_take(struct calibration *c, struct template *found);
-/* Of those of sensor.h, reversed or not, with an approximate duration.  low: lag of the
- * lowest autocorrelation; hint: the pulse taken from the record, which is tried first, or
- * NULL. */
-enum separate_status find_shape_known(struct examples *ex, double low,
+/* Kinds of shapes: those of sensor.h, reversed or not, and those of the clearest single
+ * events. */
+enum { SHAPES_KNOWN = 1, SHAPES_SINGLE = 2 };
+/* The best of these kinds, with an approximate duration; single events, which have noise,
+ * are taken only if known shapes cost several times as much.  low: lag of the lowest
+ * autocorrelation; hint: the pulse taken from the record, which is tried first, or NULL.
+ * HARD if none may describe the record better than what does so at the price of c, which
+ * is INFINITY where nothing does. */
+enum separate_status find_shape(struct examples *ex, unsigned kinds, double low,
 	const struct template *hint, struct calibration *c);
-/* Of the clearest single events, if it costs less than the pulse of c; else
- * SEPARATE_HARD. */
-enum separate_status find_shape_single(struct examples *ex, struct calibration *c);
 
 /* --- tune.c: duration, gain, width and drift of the gain of least chi-square */
 

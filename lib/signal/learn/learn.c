@@ -9,9 +9,6 @@
 
 enum { RANGE_EVENTS = 12 };
 
-/* Where the pulse is from: events that are alike, sensor.h, or a single event. */
-enum { TAKEN, KNOWN, SINGLE };
-
 /* Share of the range of delays beyond which there are no particles of plug flow, whose
  * velocities differ by a few per cent.  With 0.5, 0.7 and 0.85 none of 1200 rows in
  * turbulent flow is wrong and all are found, and groups in plug flow do not differ
@@ -127,9 +124,10 @@ static int shows_at_both(const struct examples *ex)
 	return share * ex->energy >= ex->scene.threshold_near * examples_pulses(ex);
 }
 
-/* Learns by pulses of one source. */
+/* Learns by the best shape of these kinds, or by that of events that are alike if none is
+ * set. */
 static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct template *found, int source,
+	const double *y2, size_t n, double low, struct template *found, unsigned kinds,
 	struct calibration *c)
 {
 	struct examples ex = { .par = par,
@@ -148,11 +146,10 @@ static enum separate_status learn_by(const struct calibrate_par *par, const doub
 	learn_hidden(par, c, ex.hidden);
 	if (flags)
 		hide_spikes(&ex, c->duration, flags);
-	if (source == TAKEN)
+	if (!kinds)
 		find_shape_take(c, found);
 	else if (status == SEPARATE_OK)
-		status = source == KNOWN ? find_shape_known(&ex, low, found, c)
-					 : find_shape_single(&ex, c);
+		status = find_shape(&ex, kinds, low, found, c);
 	if (status == SEPARATE_OK) {
 		examples_pick(&ex, EXAMPLES_MAX, c);
 		examples_set_scene(&ex, c);
@@ -218,42 +215,53 @@ static const double COMPARED = 8;
 
 /* Shape, duration, gain and range of delays by joint fits.  Up to three attempts end with
  * the first that describes the examples: by a pulse taken from the record, which groups
- * of nearly equal composition mislead, by those of sensor.h, with half of the work that
- * is left, and by those of single events. */
+ * of nearly equal composition mislead; by the best guess of those of sensor.h and of
+ * single events, with half of the work that is left; and by those of the other kind. */
 enum separate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c)
 {
 	const struct calibration first = *c;
+	const unsigned either = SHAPES_KNOWN | SHAPES_SINGLE;
 	const int taken = found && found->shape;
 	const int any = par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	const int hidden = is_hidden(par, c, n);
-	const int last = taken && found->alone               ? TAKEN
-			 : found && any && !c->whitening.tap ? SINGLE
-							     : KNOWN;
+	unsigned left = taken && found->alone               ? 0
+			: found && any && !c->whitening.tap ? either
+							    : SHAPES_KNOWN;
+	unsigned kinds = taken ? 0 : left;
 	enum separate_status status = SEPARATE_HARD;
 
-	for (int k = taken ? TAKEN : KNOWN; k <= last; k++) {
+	do {
 		struct calibration other = first;
 		struct calibrate_par part = *par;
 		enum separate_status now;
+		int stands;
 
 		other.shape = NULL;
 		other.work = c->work;
-		other.penalised = status == SEPARATE_OK ? c->penalised : INFINITY;
-		if (k == KNOWN && last == SINGLE)
+		stands = status == SEPARATE_OK && calibration_stands(c);
+		other.penalised =
+			stands || (status == SEPARATE_OK && kinds == SHAPES_SINGLE)
+				? c->penalised
+				: INFINITY;
+		if (kinds == either)
 			part.most = 0.5 * (c->work + par->most);
-		if (k == KNOWN && status == SEPARATE_OK && calibration_stands(c))
+		if (kinds & SHAPES_KNOWN && stands)
 			part.most = fmin(
 				part.most, c->work + COMPARED * (c->work - first.work));
-		now = learn_by(&part, y1, y2, n, low, k == KNOWN && taken ? NULL : found,
-			k, &other);
+		now = learn_by(&part, y1, y2, n, low,
+			kinds & SHAPES_KNOWN && taken ? NULL : found, kinds, &other);
 		c->work = other.work;
 		if (now != SEPARATE_OK && now != SEPARATE_HARD) {
 			shape_free(other.shape);
 			return now;
 		}
-		if (k == SINGLE && now == SEPARATE_OK && other.events < FEWEST)
+		if (kinds)
+			left = kinds != either                        ? 0
+			       : now == SEPARATE_OK && other.measured ? SHAPES_KNOWN
+								      : SHAPES_SINGLE;
+		if (kinds & SHAPES_SINGLE && other.measured && other.events < FEWEST)
 			now = SEPARATE_HARD;
 		if (now == SEPARATE_OK &&
 			(status != SEPARATE_OK || other.penalised < c->penalised)) {
@@ -263,8 +271,9 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 		} else {
 			shape_free(other.shape);
 		}
-		if (status == SEPARATE_OK && is_enough(k == TAKEN, hidden, c))
+		if (status == SEPARATE_OK && is_enough(!kinds, hidden, c))
 			break;
-	}
+		kinds = left;
+	} while (left);
 	return status;
 }
