@@ -3,7 +3,6 @@
 #include "life/grey/grey.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { WINDOW = 50 }; /* rows over which errors are averaged */
 
@@ -98,14 +97,6 @@ static void fit_orders(struct order *o, int low, int high)
 	o->now.counts.tried += (unsigned long)(high - low + 1);
 }
 
-/* Rows over which orders are compared: half of them, at most the window. */
-static int rows_compared(const struct order *o)
-{
-	long half = o->now.rows / 2;
-
-	return half < WINDOW ? (int)half : WINDOW;
-}
-
 /* Order p has made its first forecast for row p. */
 static double criterion(const struct order *o, int p, int rows)
 {
@@ -120,23 +111,20 @@ static double criterion(const struct order *o, int p, int rows)
 	return sum / rows;
 }
 
-/* Residuals tell nothing of the curves that pass through all points. */
-static int lowest(const struct order *o)
-{
-	return o->par.rule == ORDER_WINDOW ? 1 : GREY_ORDER_MIN;
-}
-
+/* Orders are compared over half of the rows, at most the window.  Residuals tell nothing
+ * of the curves that pass through all points. */
 static void choose(struct order *o, int high)
 {
-	int rows = rows_compared(o), best = 0;
+	int lowest = o->par.rule == ORDER_WINDOW ? 1 : GREY_ORDER_MIN, best = 0;
+	long half = o->now.rows / 2;
 	double least = INFINITY;
 
-	if (o->par.rule == ORDER_FIXED || high <= lowest(o)) {
+	if (o->par.rule == ORDER_FIXED || high <= lowest) {
 		o->now.chosen = high;
 		return;
 	}
-	for (int p = lowest(o); p <= high; p++) {
-		double e = criterion(o, p, rows);
+	for (int p = lowest; p <= high; p++) {
+		double e = criterion(o, p, half < WINDOW ? (int)half : WINDOW);
 
 		if (e < least || !best) {
 			least = e;
