@@ -109,32 +109,20 @@ static void put_row(const struct sink *out, const struct outlook_row *in,
 
 static char *column_names(void)
 {
-	char *names = xprintf("%st y%s", unit_column ? "unit " : "",
-		bare ? "" : " grey prediction state order ess");
-	char *all;
-
-	if (isnan(outlook_threshold))
-		return names;
-	all = outlook_columns(names);
-	free(names);
-	return all;
+	return outlook_columns(xprintf("%st y%s", unit_column ? "unit " : "",
+		bare ? "" : " grey prediction state order ess"));
 }
 
 /* Units of the columns written. */
 static char *column_units(const struct series *in)
 {
-	const char *t = timeunit_word();
-	char y[UNIT_WORD], *filtered, *units, *all;
+	char y[UNIT_WORD], *units;
 
 	table_unit_word(series_table(in), series_value_column(in), y);
-	filtered = bare ? xstrdup("") : xprintf(" %s %s %s 1 1", y, y, y);
-	units = xprintf("%s%s %s%s", unit_column ? "1 " : "", t, y, filtered);
-	free(filtered);
-	if (isnan(outlook_threshold))
-		return units;
-	all = outlook_units(units, t);
-	free(units);
-	return all;
+	units = xprintf("%s%s %s", unit_column ? "1 " : "", timeunit_word(), y);
+	if (!bare)
+		units = xappend(units, " %s %s %s 1 1", y, y, y);
+	return outlook_units(units);
 }
 
 static struct sink open_sink(const struct series *in)
@@ -335,5 +323,5 @@ int main(int argc, char **argv)
 	outlook_close();
 	close_sink(&out);
 	series_close(in);
-	return shell_done(alarm > 0 ? EXIT_ALARM : doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
+	return shell_done(alarm ? EXIT_ALARM : doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -452,7 +452,9 @@ static int life_cells(void)
 
 int outlook_cells(void)
 {
-	return life_cells() + covariates_count() + (weights ? WEIGHED : 0);
+	return isnan(outlook_threshold)
+		       ? 0
+		       : life_cells() + covariates_count() + (weights ? WEIGHED : 0);
 }
 
 static int is_rescaled(const struct outlook *o)
@@ -617,10 +619,11 @@ void outlook_count(struct outlook *o)
 	}
 }
 
-char *outlook_columns(const char *before)
+char *outlook_columns(char *names)
 {
-	char *names = levels_columns(before, "rul_q", &levels);
-
+	if (isnan(outlook_threshold))
+		return names;
+	names = levels_columns(names, "rul_q", &levels);
 	names = xappend(names, " p_no_crossing");
 	if (!isnan(mission))
 		names = xappend(names, " p_failure");
@@ -635,15 +638,13 @@ char *outlook_columns(const char *before)
 	return names;
 }
 
-char *outlook_units(const char *before, const char *time)
+char *outlook_units(char *units)
 {
-	char *units = xstrdup(before);
-
 	for (int i = 0; i < outlook_cells(); i++) {
 		int is_time = i < levels.n ||
 			      (!isnan(cost_ratio) && i == levels.n + 1 + !isnan(mission));
 
-		units = xappend(units, " %s", is_time ? time : "1");
+		units = xappend(units, " %s", is_time ? timeunit_word() : "1");
 	}
 	return units;
 }

@@ -17,9 +17,8 @@
 #include "life/particle/adaptive.h"
 #include "life/trend/bank.h"
 #include "num/state.h"
-#include <stdint.h>
 
-/* The value of the option; nan: there is no life to predict, nor a call of what follows.
+/* The value of the option; nan: there is no life to predict, and no struct outlook.
  */
 extern double outlook_threshold;
 
@@ -58,7 +57,7 @@ void outlook_pass(struct outlook *o, struct state *s);
  */
 void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell);
-int outlook_cells(void);
+int outlook_cells(void); /* 0 without a threshold */
 /* After the last row: tells which events the unit has used.  Warns and
  * returns 1 if there are events before the saved state that it did not know, or if its
  * values have changed their scale. */
@@ -67,8 +66,8 @@ int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none *
 /* Counts the work it did. */
 void outlook_count(struct outlook *o);
 
-/* Names of the columns and their units, behind those given; fresh memory. */
-char *outlook_columns(const char *before);
-char *outlook_units(const char *before, const char *time);
+/* Append the names of the columns and their units, as xappend() does. */
+char *outlook_columns(char *names);
+char *outlook_units(char *units);
 
 #endif

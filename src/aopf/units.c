@@ -111,13 +111,12 @@ void units_free(struct units *units)
 
 int units_alarm(const struct units *units)
 {
-	int most = 0;
+	int active = 0;
 
 	for (int i = 0; i < units->n; i++)
-		if (units->unit[i]->outlook &&
-			outlook_alarm(units->unit[i]->outlook) > most)
-			most = outlook_alarm(units->unit[i]->outlook);
-	return most;
+		active |= units->unit[i]->outlook &&
+			  outlook_alarm(units->unit[i]->outlook) > 0;
+	return active;
 }
 
 int units_report(const struct units *units)
@@ -191,7 +190,7 @@ int unit_takes(
 
 int unit_cells(int bare)
 {
-	return (bare ? 0 : FILTERED) + (isnan(outlook_threshold) ? 0 : outlook_cells());
+	return (bare ? 0 : FILTERED) + outlook_cells();
 }
 
 void unit_step(struct machine *u, const struct outlook_row *in, double *cell)

@@ -34,7 +34,7 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell);
 int unit_cells(int bare);
 /* After the last row: warns and returns 1 if events or saved states were of no use. */
 int units_report(const struct units *units);
-int units_alarm(const struct units *units); /* the highest active alarm level */
+int units_alarm(const struct units *units); /* 1: one is active */
 
 /* options: those that shape the state; a file made with others, or with
  * another fleet, is refused. */

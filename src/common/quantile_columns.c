@@ -8,11 +8,8 @@ void levels_check(const struct opt_list *levels)
 			die(EXIT_USAGE, "--levels: levels must be ascending");
 }
 
-char *levels_columns(
-	const char *before, const char *prefix, const struct opt_list *levels)
+char *levels_columns(char *names, const char *prefix, const struct opt_list *levels)
 {
-	char *names = xstrdup(before);
-
 	for (int i = 0; i < levels->n; i++)
 		names = xappend(names, " %s%s%g", prefix,
 			levels->v[i] < 0.0999999 ? "0" : "", 100 * levels->v[i]);

@@ -7,8 +7,7 @@
 /* Dies where the levels of --levels do not ascend. */
 void levels_check(const struct opt_list *levels);
 
-/* The given names and one for each level, separated by blanks; the caller frees. */
-char *levels_columns(
-	const char *before, const char *prefix, const struct opt_list *levels);
+/* Appends a name for each level, as xappend() does. */
+char *levels_columns(char *names, const char *prefix, const struct opt_list *levels);
 
 #endif

@@ -18,8 +18,8 @@ static char *column_names(const struct lifetable_par *par)
 {
 	if (par->samples)
 		return xstrdup("t path rwl");
-	return xappend(levels_columns("t mean", "q", par->levels), " p_no_failure%s%s",
-		par->grey ? " grey" : "",
+	return xappend(levels_columns(xstrdup("t mean"), "q", par->levels),
+		" p_no_failure%s%s", par->grey ? " grey" : "",
 		isnan(par->eol) ? "" : " truth error accuracy mass inside covered crps");
 }
 
