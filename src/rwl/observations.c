@@ -8,8 +8,6 @@
 #include "life/pair/observed.h"
 #include "num/running.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
 	NULL };

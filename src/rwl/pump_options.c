@@ -1,7 +1,6 @@
 #include "pump_options.h"
 #include "cli/msg.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const size_sets[] = { "all", "step", NULL };

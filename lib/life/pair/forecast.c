@@ -8,7 +8,6 @@
 #include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct forecast {
 	struct forecast_par par;

@@ -1,6 +1,5 @@
 /* bank.c - see bank.h */
 #include "life/trend/bank_state.h"
-#include "num/deviates.h"
 #include "num/philox.h"
 #include "num/select.h"
 #include "num/student.h"
@@ -71,6 +70,8 @@ struct bank *bank_new(const struct bank_par *par)
 		b->par.families = BANK_ALL;
 	b->shapes = shapes;
 	b->capacity = capacity;
+	b->quantum = INFINITY;
+	b->before = NAN;
 	return b;
 }
 
@@ -304,7 +305,7 @@ static struct trend *room(struct bank *b)
 {
 	struct trend *lightest;
 
-	if (b->trends < b->capacity && b->trends < b->fixed + PARTICLES)
+	if (b->trends < b->fixed + PARTICLES)
 		return &b->trend[b->trends++];
 	lightest = &b->trend[b->fixed];
 	for (int i = b->fixed + 1; i < b->trends; i++)
@@ -660,14 +661,10 @@ static void heed_rounding(struct bank *b, double y)
 {
 	double step = fabs(y - b->before);
 
-	if (b->rows == 0 && b->n_held == 0) {
-		b->quantum = INFINITY;
-		b->repeats = 0;
-	} else if (step == 0) {
+	if (step == 0)
 		b->repeats = 1;
-	} else {
+	else if (step > 0) /* else it is the first value */
 		b->quantum = isinf(b->quantum) ? step : common_divisor(step, b->quantum);
-	}
 	if (b->rows == 0)
 		return;
 	step = rounding_of(b);

@@ -35,7 +35,6 @@
 #define LIFE_BANK_H
 
 #include "num/state.h"
-#include <stdint.h>
 
 enum bank_family {
 	BANK_LINEAR = 1,

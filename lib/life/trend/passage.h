@@ -19,6 +19,7 @@
 
 #include "life/trend/bank.h"
 #include "num/status.h"
+#include <stdint.h>
 
 struct bank_chances; /* random numbers, shared by all units of a run */
 

@@ -56,7 +56,7 @@ int plateau_reached(const struct plateau *p, double threshold, double since, int
 	const struct block *first = &p->block[0];
 	struct regression line = { 0 };
 
-	for (int k = p->n - 1; k >= LEVEL / 2 && p->block[k].t >= since; k--) {
+	for (int k = p->n - 1; k >= HALF && p->block[k].t >= since; k--) {
 		double way, rate, slope, error, left;
 
 		regression_add(&line, p->block[k].t,
