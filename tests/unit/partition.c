@@ -63,7 +63,7 @@ static void check_estimate(void)
 	double mh = 15.5, ml = 1.1, zone;
 
 	ok(partition_close(p, fragment, 0.1) == PARTITION_OK, "two classes are closed");
-	partition_estimate(p, 0, &w);
+	w = partition_estimate(p, 0);
 	zone = partition_power_mean(1e6, ml, 21e6, mh);
 	near(w.mean, 45 * mh + 45 * ml + 10 * zone, 1e-9,
 		"the wear of the component is right");
@@ -71,8 +71,8 @@ static void check_estimate(void)
 	partition_free(p);
 	p = two_classes(-1, -1, 2);
 	partition_close(p, fragment, 0);
-	partition_estimate(p, 0, &w);
-	partition_estimate(p, 1, &one);
+	w = partition_estimate(p, 0);
+	one = partition_estimate(p, 1);
 	near(w.mean, 50 * 17 + 50 * 1.1, 1e-9, "steps before the first one do not count");
 	near(w.life_variance, 50 * 1 + 50 * 0.01, 1e-9,
 		"the variance of independent fragments is that of one times their number");
@@ -83,7 +83,7 @@ static void check_estimate(void)
 	partition_free(p);
 	p = two_classes(0.3e-6, 0.2e-6, 1);
 	partition_close(p, fragment, 0.1);
-	partition_estimate(p, 0, &w);
+	w = partition_estimate(p, 0);
 	near(w.mean, 30 * mh + 20 * ml + 50 * zone, 1e-9,
 		"the zone has the area that the classes leave");
 	partition_free(p);
@@ -149,7 +149,7 @@ static double coverage(int law, int k)
 		for (int d = 0; d < DRAWS; d++) {
 			struct partition_wear w;
 
-			partition_replicate(p, 0, rng, &w);
+			w = partition_replicate(p, 0, rng);
 			below += w.mean < 1;
 		}
 		held += below > 0.05 * DRAWS && below < 0.95 * DRAWS;
@@ -195,12 +195,12 @@ static void check_draws(void)
 			add_row(p, 0, r, s, 1 + (r * 7 % 25) * 0.1 + s * 0.01, 0);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_OK,
 		"one class needs no pressure");
-	partition_estimate(p, 0, &all);
+	all = partition_estimate(p, 0);
 	for (int i = 0; i < N; i++) {
 		double d;
 
 		rng_reset(rng, 1, (uint32_t)i, RNG_BOOTSTRAP);
-		partition_replicate(p, 0, rng, &w);
+		w = partition_replicate(p, 0, rng);
 		d = w.mean - all.mean;
 		mean += d / N;
 		square += d * d / N;
@@ -234,7 +234,7 @@ static void check_sparse_draws(void)
 	near(partition_count(p, 0, &mean, &error) / 4000000000001., 1, 1e-15,
 		"realisations without particles are counted");
 	for (int i = 0; i < N; i++) {
-		partition_replicate(p, 0, rng, &w);
+		w = partition_replicate(p, 0, rng);
 		none += partition_large(p, 0.5, 1) == 0;
 	}
 	near((double)none / N, exp(-2), 4 * sqrt(0.135 * 0.865 / N),
@@ -261,12 +261,12 @@ static void check_groups(void)
 	}
 	ok(partition_close(p, fragment, 0) == PARTITION_OK,
 		"20000 realisations are accepted");
-	partition_estimate(p, 0, &w);
+	w = partition_estimate(p, 0);
 	ok(partition_large(p, 0.0999, 0) == 1 && partition_large(p, 0.1001, 0) == 2,
 		"groups keep the counts of particles");
 	near(w.step_variance, 0, 1e-12, "equal volumes have no variance");
 	for (int i = 0; i < N; i++) {
-		partition_replicate(p, 0, rng, &w);
+		w = partition_replicate(p, 0, rng);
 		first += partition_large(p, 0.1, 0) == 1;
 	}
 	ok(first > 0.4 * N && first < 0.6 * N,
@@ -288,7 +288,7 @@ static void check_order(void)
 			add_row(p, 0, r, s, r + s, 0);
 	ok(partition_close(p, fragment, 0) == PARTITION_OK,
 		"rows in the order of steps are accepted");
-	partition_estimate(p, 0, &w);
+	w = partition_estimate(p, 0);
 	near(w.mean, 24.5 + 2, 1e-12,
 		"rows in the order of steps are grouped by realisation");
 	partition_free(p);
@@ -316,7 +316,7 @@ static void check_sparse(void)
 	add_row(p, 0, 3, 2, 8, 1);
 	ok(partition_close(p, fragment, 0) == PARTITION_OK,
 		"a table of particles is accepted");
-	partition_estimate(p, 0, &w);
+	w = partition_estimate(p, 0);
 	near(w.mean, 14 / 8., 1e-15, "realisations without particles have no volume");
 	near(w.step_variance, (36 + 64 - 14 * 14 / 8.) / 7, 1e-13,
 		"the variance of a step is that over all steps");

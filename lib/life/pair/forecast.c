@@ -56,7 +56,7 @@ static void draw_path(struct forecast *f, struct partition *partition, long i)
 	struct path *path = &f->path[i];
 
 	rng_reset(f->rng, par->seed, par->first + (uint32_t)i, RNG_BOOTSTRAP);
-	partition_replicate(partition, par->parts, f->rng, &path->wear);
+	path->wear = partition_replicate(partition, par->parts, f->rng);
 	if (!isnan(par->critical))
 		path->large_step =
 			partition_large(partition, par->critical, par->cumulative);
@@ -71,10 +71,7 @@ static void draw_path(struct forecast *f, struct partition *partition, long i)
 
 static void draw_paths(struct forecast *f, struct partition *partition)
 {
-	struct partition_wear all;
-
-	partition_estimate(partition, f->par.parts, &all);
-	f->mean = all.mean;
+	f->mean = partition_estimate(partition, f->par.parts).mean;
 	for (int k = 0; k < f->par.nslopes; k++)
 		running_add(&f->logs, log(f->par.slope[k]));
 	for (long i = 0; i < f->par.count; i++) {
@@ -139,20 +136,19 @@ static int is_timed(const struct forecast *f)
 }
 
 /* Quantiles of the rate of the gap over the paths at n levels, in [0, 1), per s; 0: the
- * paths have none. */
+ * paths have none.  Overwrites later. */
 static int find_rates(const struct forecast *f, const double *level, int n, double *rate)
 {
 	size_t count = (size_t)f->par.count;
-	double *all = is_timed(f) ? malloc(count * sizeof *all) : NULL;
 
-	if (!all)
+	if (!is_timed(f))
 		return 0;
 	for (size_t i = 0; i < count; i++)
-		all[i] = f->path[i].wear.mean / (f->par.pair.area * f->path[i].step_time);
-	sort_numbers(all, count);
+		f->later[i] =
+			f->path[i].wear.mean / (f->par.pair.area * f->path[i].step_time);
+	sort_numbers(f->later, count);
 	for (int k = 0; k < n; k++)
-		rate[k] = all[(size_t)(level[k] * (double)count)];
-	free(all);
+		rate[k] = f->later[(size_t)(level[k] * (double)count)];
 	return 1;
 }
 

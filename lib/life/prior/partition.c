@@ -188,8 +188,7 @@ enum partition_status partition_fragment(
 	return reading(c, realisations_add(c->reader, row));
 }
 
-/* Moments of the rows read.  Realisations and steps that are missing from a particle
- * table shed nothing. */
+/* Moments of the rows read. */
 static enum partition_status sum_up(struct partition *p, struct class *c)
 {
 	double empty = 0, scatter;
@@ -337,30 +336,29 @@ static double zone_mean(const struct partition *p, const double *y)
 }
 
 /* Component from the present moments of the classes. */
-static void integrate(
-	const struct partition *p, double parts, struct partition_wear *wear)
+static struct partition_wear integrate(const struct partition *p, double parts)
 {
 	double mean[PARTITION_CLASSES_MAX], step[PARTITION_CLASSES_MAX];
 	double life[PARTITION_CLASSES_MAX];
-	struct partition_wear zone;
+	struct partition_wear wear = { 0 }, zone;
 
-	*wear = (struct partition_wear){ 0 };
 	for (int c = 0; c < p->nclasses; c++) {
 		const struct class *k = &p->class[c];
 
-		add_area(wear, &k->now, k->area, p->fragment_area, parts);
+		add_area(&wear, &k->now, k->area, p->fragment_area, parts);
 		mean[c] = k->now.mean;
 		step[c] = k->now.step_variance;
 		life[c] = k->now.life_variance;
 	}
 	if (!(p->zone > 0))
-		return;
+		return wear;
 	zone = (struct partition_wear){ zone_mean(p, mean), zone_mean(p, step),
 		zone_mean(p, life) };
-	add_area(wear, &zone, p->zone, p->fragment_area, parts);
+	add_area(&wear, &zone, p->zone, p->fragment_area, parts);
+	return wear;
 }
 
-void partition_estimate(struct partition *p, double parts, struct partition_wear *wear)
+struct partition_wear partition_estimate(struct partition *p, double parts)
 {
 	for (int c = 0; c < p->nclasses; c++) {
 		struct class *k = &p->class[c];
@@ -369,7 +367,7 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 		for (int i = 0; i < GROUPS; i++)
 			k->times[i] = 1;
 	}
-	integrate(p, parts, wear);
+	return integrate(p, parts);
 }
 
 /* A draw of the mean, relative to the observed one: see partition.h. */
@@ -397,8 +395,7 @@ static void draw_groups(struct class *c, gsl_rng *rng)
 			 GROUPS]++;
 }
 
-void partition_replicate(
-	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear)
+struct partition_wear partition_replicate(struct partition *p, double parts, gsl_rng *rng)
 {
 	/* by pressure, so that the order of the tables does not matter */
 	for (int c = 0; c < p->nclasses; c++) {
@@ -411,7 +408,7 @@ void partition_replicate(
 		if (p->sizes)
 			draw_groups(k, rng);
 	}
-	integrate(p, parts, wear);
+	return integrate(p, parts);
 }
 
 /* Particles that one fragment of a class sheds in a step, from 0. */

@@ -31,7 +31,7 @@
  *	partition_fragment(p, c, &row);
  *	...
  *	if (partition_close(p, 1e-8, 0.1) == PARTITION_OK)
- *		partition_estimate(p, 0, &wear);
+ *		wear = partition_estimate(p, 0);
  *	partition_free(p);
  */
 #ifndef LIFE_PARTITION_H
@@ -104,12 +104,12 @@ struct partition_wear {
 
 /* Wear from all fragments.  parts: number of independently wearing parts per class and
  * zone; 0: as many as fragments fit; 1: each class wears as one fragment. */
-void partition_estimate(struct partition *p, double parts, struct partition_wear *wear);
+struct partition_wear partition_estimate(struct partition *p, double parts);
 /* Wear from means drawn by rng as above, with scatter in proportion to them.  If sizes
  * was 1, whole realisations (more than 251 of them in groups) are resampled and kept for
  * partition_large(). */
-void partition_replicate(
-	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear);
+struct partition_wear partition_replicate(
+	struct partition *p, double parts, gsl_rng *rng);
 
 /* First step whose share of large particles, by number, reaches probability in the last
  * replicate (after partition_estimate(): in all fragments).  The share is of the
