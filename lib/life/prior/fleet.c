@@ -28,8 +28,7 @@ struct unit {
 };
 
 struct fleet {
-	double threshold;
-	int direction;
+	struct bank_par par; /* of the banks of the units */
 	struct unit *path;
 	size_t room;
 	int units;
@@ -42,10 +41,9 @@ struct fleet *fleet_new(double threshold, int direction)
 {
 	struct fleet *f = calloc(1, sizeof *f);
 
-	if (!f)
-		return NULL;
-	f->threshold = threshold;
-	f->direction = direction;
+	if (f)
+		f->par = (struct bank_par){ .threshold = threshold,
+			.direction = direction };
 	return f;
 }
 
@@ -88,12 +86,10 @@ static enum num_status rise(struct unit *p, double age, double level)
 
 static struct unit *path_of(struct fleet *f, int unit)
 {
-	struct bank_par par = { .threshold = f->threshold, .direction = f->direction };
-
 	if (room_for(&f->path, &f->room, (size_t)unit + 1, sizeof *f->path))
 		return NULL;
 	while (f->units <= unit)
-		f->path[f->units++] = (struct unit){ .bank = bank_new(&par) };
+		f->path[f->units++] = (struct unit){ .bank = bank_new(&f->par) };
 	return f->path[unit].bank ? &f->path[unit] : NULL;
 }
 
@@ -111,7 +107,7 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 	memmove(p->t + 1, p->t, 2 * sizeof *p->t);
 	memmove(p->y + 1, p->y, 2 * sizeof *p->y);
 	p->t[0] = t;
-	p->y[0] = f->direction * y;
+	p->y[0] = f->par.direction * y;
 	if (p->rows < 3)
 		return p->rows == 1 ? rise(p, 0, p->y[0]) : NUM_OK;
 	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
@@ -121,7 +117,7 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 static enum num_status carry_on(const struct fleet *f, struct unit *p)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
-	double end = f->direction * f->threshold, from = p->point[p->n - 1].level,
+	double end = f->par.direction * f->par.threshold, from = p->point[p->n - 1].level,
 	       life[DRAWS];
 	size_t middle = DRAWS / 2;
 	enum num_status status = chances ? NUM_OK : NUM_MEMORY;
@@ -129,7 +125,8 @@ static enum num_status carry_on(const struct fleet *f, struct unit *p)
 	for (int k = 1; status == NUM_OK && k <= AHEAD && bank_ready(p->bank); k++) {
 		double level = from + (end - from) * k / AHEAD;
 
-		status = bank_draw(p->bank, chances, p->t[0], f->direction * level, life);
+		status = bank_draw(
+			p->bank, chances, p->t[0], f->par.direction * level, life);
 		if (status == NUM_OK)
 			select_ranks(life, DRAWS, &middle, 1);
 		if (status == NUM_OK && isfinite(life[middle]))
@@ -153,7 +150,7 @@ static int lay_out(const struct unit *p, double end, struct bank_point *path)
 
 enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 {
-	double end = f->direction * f->threshold;
+	double end = f->par.direction * f->par.threshold;
 	size_t units = (size_t)f->units;
 
 	*failed = *carried_on = 0;
