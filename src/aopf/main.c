@@ -3,6 +3,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/covariates.h"
 #include "common/time_unit.h"
 #include "filter_options.h"
 #include "io/quantities.h"
@@ -264,7 +265,7 @@ static void read_rows(
 		item->in = (struct outlook_row){ t,
 			clock < 0 ? t : table_number(series_table(in), clock),
 			series_value(in), series_unit_name(in), { 0 } };
-		outlook_read(in, &item->in);
+		covariates_read(series_table(in), item->in.load);
 		if (!isfinite(item->in.clock))
 			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
 				table_name(series_table(in)),

@@ -175,8 +175,7 @@ static struct reasons doubts;
 
 const char *outlook_doubt(void)
 {
-	if (!isnan(outlook_threshold))
-		reasons_add(&doubts, covariates_doubt());
+	reasons_add(&doubts, covariates_doubt());
 	return reasons_text(&doubts);
 }
 
@@ -220,12 +219,6 @@ void outlook_close(void)
 	event_list_free();
 	bank_chances_free(chances);
 	reasons_free(&doubts);
-}
-
-void outlook_read(const struct series *in, struct outlook_row *row)
-{
-	if (!isnan(outlook_threshold))
-		covariates_read(series_table(in), row->load);
 }
 
 struct outlook *outlook_new(const char *unit, struct adaptive *filter)
@@ -535,7 +528,7 @@ static int check_direction(const struct outlook *o)
 static int failed_alone(const struct outlook *o)
 {
 	return o->now.failed && bank_ready(o->bank) &&
-	       (o->now.leapt || bank_beyond(o->bank, outlook_threshold) < 0.95);
+	       (o->now.leapt || bank_beyond(o->bank) < 0.95);
 }
 
 /* Outliers, which the bank leaves out, may have been readings of a sensor that fails. */

@@ -44,9 +44,6 @@ struct outlook_row {
 	double load[BANK_LOADS]; /* the covariates since the row before */
 };
 
-/* Reads the covariates of the present row; dies where one is not finite. */
-void outlook_read(const struct series *in, struct outlook_row *row);
-
 struct outlook;
 
 /* unit: its name, the caller's.  filter: NULL if there is none. */

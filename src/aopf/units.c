@@ -234,6 +234,7 @@ static size_t state_size(struct units *units)
 	return s.size;
 }
 
+/* The head of a file, and the room for a state in it. */
 static struct head head_of(struct units *units, const char *options)
 {
 	struct head h = { .size = state_size(units),
@@ -241,6 +242,9 @@ static struct head head_of(struct units *units, const char *options)
 		.fleet = fleet_table_checksum() };
 
 	memcpy(h.magic, magic, sizeof magic);
+	units->size = (size_t)h.size;
+	free(units->place);
+	units->place = xcalloc(1, sizeof(struct place) + units->size);
 	return h;
 }
 
@@ -251,18 +255,8 @@ static off_t offset_of(const struct units *units, int number, uint64_t sequence)
 	return (off_t)(sizeof(struct head) + (2 * (size_t)number + sequence % 2) * size);
 }
 
-static void make_room(struct units *units, size_t size)
+static uint64_t check_of(const struct units *units, struct place p)
 {
-	units->size = size;
-	free(units->place);
-	units->place = xcalloc(1, sizeof(struct place) + size);
-}
-
-static uint64_t check_of(const struct units *units)
-{
-	struct place p;
-
-	memcpy(&p, units->place, sizeof p);
 	p.check = 0;
 	return checksum(units->place + sizeof p, units->size,
 		checksum(&p, sizeof p, CHECKSUM_START));
@@ -278,7 +272,7 @@ static int read_place(
 		fread(units->place, 1, size, f) != size)
 		return 0;
 	memcpy(p, units->place, sizeof *p);
-	return p->sequence > 0 && check_of(units) == p->check;
+	return p->sequence > 0 && check_of(units, *p) == p->check;
 }
 
 /* The unit of that number, from its newer complete copy; 0 if there is none. */
@@ -318,7 +312,6 @@ void units_resume(struct units *units, const char *path, const char *options)
 	if (h.fleet != want.fleet)
 		die(EXIT_RUN, "%s: saved with another fleet in the file of --fleet",
 			path);
-	make_room(units, (size_t)h.size);
 	while (resume_unit(units, f, units->n))
 		;
 	units->damaged =
@@ -355,7 +348,6 @@ void units_keep(struct units *units, const char *path, const char *options)
 	const char *name;
 
 	fclose(file_reserve(path, &name)); /* no file that is read */
-	make_room(units, (size_t)h.size);
 	units->path = path;
 	/* Written beside the state to resume from, which is replaced once this one is
 	 * complete. */
@@ -378,8 +370,7 @@ void unit_save(struct units *units, struct machine *u)
 			u->name, (int)NAME);
 	memcpy(p.name, u->name, strlen(u->name));
 	pass(u, &s);
-	memcpy(units->place, &p, sizeof p);
-	p.check = check_of(units);
+	p.check = check_of(units, p);
 	memcpy(units->place, &p, sizeof p);
 	write_at(units, units->place, sizeof p + units->size,
 		offset_of(units, u->number, p.sequence));

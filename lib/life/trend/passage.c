@@ -348,9 +348,9 @@ int bank_ceased(const struct bank *b)
 	return holds(b, has_ceased);
 }
 
-double bank_beyond(const struct bank *b, double level)
+double bank_beyond(const struct bank *b)
 {
-	struct prospect o = foresee(b, 0, level);
+	struct prospect o = foresee(b, 0, b->par.threshold);
 	double sum = 0;
 
 	for (int i = 0; i < b->trends; i++) {

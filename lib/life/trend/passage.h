@@ -7,9 +7,8 @@
  * or a growth of the rate, unless the trends disagree as much already, and its rate may
  * swing as it has so far (unrest.h).
  *
- * The regime may change once more, after a time J with P(J > x) = (a / (a + x))^c, where
- * a is its age: see aopf(1), Long-term models, also for the repairs to come and for the
- * share of the draws that take rows held back for a new regime.
+ * Of the changes of regime and the repairs to come, and of the share of the draws that
+ * take rows held back for a new regime, see aopf(1), Long-term models.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);
@@ -41,8 +40,8 @@ int bank_recedes(const struct bank *b);
  * plateau.h. */
 int bank_ceased(const struct bank *b);
 
-/* The probability that the damage is beyond a level, by the trends, which know nothing of
- * rows held back. */
-double bank_beyond(const struct bank *b, double level);
+/* The probability that the damage is beyond the threshold, by the trends, which know
+ * nothing of rows held back. */
+double bank_beyond(const struct bank *b);
 
 #endif
