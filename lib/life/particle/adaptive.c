@@ -221,9 +221,8 @@ static double missed_lately(const struct adaptive *a)
 	return n > 0 ? sum / n : 0;
 }
 
-/* An observation is classified as an outlier if its distance from the forecast, and from
- * the observation before it, is OUTLYING times the recent error of noise and model.  Not
- * twice in a row: then the series itself has moved. */
+/* The observation before counts as a forecast, too.  Not twice in a row: then the series
+ * itself has moved. */
 static int is_outlier(struct adaptive *a, double y, double forecast, double noise)
 {
 	double usual = fmax(noise * noise, missed_lately(a)),
@@ -286,12 +285,12 @@ static void begin(struct adaptive *a, double t, double y, struct adaptive_row *r
 
 static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	double gap = t - a->time, noise = observation_noise(a), process;
+	double gap = t - a->time, noise = observation_noise(a),
+	       process = process_noise(a, noise, gap);
 	int order = order_chosen(a->order); /* the particles remember all its rows */
 
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
-	process = process_noise(a, noise, gap);
 	if (order >= MODEL)
 		forecast_particles(
 			a, a->filter, &a->gap[a->filled - 1], order, gap, noise);

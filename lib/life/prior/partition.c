@@ -30,8 +30,7 @@ struct class
 	struct running volume;
 	struct regression steps; /* of the volume on the number of steps */
 	struct running cell;     /* over realisations and steps: volume */
-	long nhistories;
-	struct shed *shed; /* [shed_steps][GROUPS] */
+	struct shed *shed;       /* [shed_steps][GROUPS] */
 	long shed_steps;
 	long groups, first_group;
 	double times[GROUPS]; /* how often each was drawn for the present replicate */
@@ -78,7 +77,7 @@ void partition_free(struct partition *p)
 static enum num_status group_sizes(
 	struct class *c, const struct realisation_cell *cell, size_t n)
 {
-	long group = (c->sparse ? cell->realisation : c->nhistories) % GROUPS,
+	long group = (c->sparse ? cell->realisation : (long)c->volume.n) % GROUPS,
 	     steps = cell[n - 1].step;
 	size_t row = GROUPS * sizeof *c->shed;
 
@@ -132,11 +131,10 @@ static enum num_status take_history(
 		steps++;
 	}
 	widen(c, cell->realisation);
-	running_add(&c->volume, volume);
-	regression_add(&c->steps, steps, volume);
 	if (c->owner->sizes && group_sizes(c, cell, n))
 		return NUM_MEMORY;
-	c->nhistories++;
+	running_add(&c->volume, volume);
+	regression_add(&c->steps, steps, volume);
 	return NUM_OK;
 }
 
@@ -191,16 +189,15 @@ enum partition_status partition_fragment(
 /* Moments of the rows read. */
 static enum partition_status sum_up(struct partition *p, struct class *c)
 {
-	double empty = 0, scatter;
+	double scatter;
 
 	if (c->highest < 0)
 		return PARTITION_EMPTY;
 	if (c->sparse) {
 		double steps = fmax((double)(p->steps - p->first_step) + 1, 0);
 
-		empty = (double)c->highest - (double)c->lowest + 1 -
-			(double)c->nhistories;
-		running_repeat(&c->volume, 0, empty);
+		running_repeat(&c->volume, 0,
+			(double)c->highest - (double)c->lowest + 1 - c->volume.n);
 		c->steps = (struct regression){ .mean_x = steps };
 		running_repeat(&c->cell, 0, c->volume.n * steps - c->cell.n);
 	}

@@ -16,7 +16,7 @@ enum {
 	HELD_GOOD = 3 /* rows running on the good side that tell a repair */
 };
 
-static const double SCORED = 18;  /* rows that count in full, see weigh() */
+static const double SCORED = 18;  /* rows that count in full, see bank.h */
 static const double CUT = 3;      /* of an innovation, see student_square() */
 static const double SURPRISE = 5; /* the same of a row that is held back */
 /* Length of a gap, in usual gaps, beyond which the machine may have been idle. */
@@ -226,8 +226,7 @@ static double log_prior(const struct bank *b, const struct trend *tr)
 		       (PACE * PACE + usual[LINE_VV] * tr->sum / freedom_of(b, tr));
 }
 
-/* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
- * given a wrong model.  A trend that has overflowed has weight 0. */
+/* Updates the weights.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
 {
 	double share = fmin(1, sqrt(SCORED / fmax(b->scored, 1))), top = -INFINITY,

@@ -21,9 +21,6 @@
  * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
  * 52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
- * A row that no trend predicts is held back until later rows tell whether it was an
- * outlier, a repair or a new regime.
- *
  *	struct bank *b = bank_new(&par);
  *	for each row
  *		bank_load(b, t, x);             (only with covariates)
