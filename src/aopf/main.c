@@ -61,14 +61,14 @@ struct sink {
 	int n;
 };
 
-static void put_json(const struct sink *out, const struct outlook_row *in,
-	const double *cell, int cells)
+static void put_json(
+	const struct sink *out, const struct outlook_row *in, const double *cell)
 {
-	int first = out->n - cells - 2;
+	int first = unit_column != NULL;
 	char text[NUMBER_TEXT];
 
 	putchar('{');
-	if (first > 0) {
+	if (first) {
 		printf("\"%s\":\"", out->name[0]);
 		for (const char *p = in->unit; *p; p++)
 			if (*p == '"' || *p == '\\')
@@ -97,7 +97,7 @@ static void put_row(const struct sink *out, const struct outlook_row *in,
 	const double *cell, int cells)
 {
 	if (!out->table) {
-		put_json(out, in, cell, cells);
+		put_json(out, in, cell);
 		return;
 	}
 	if (unit_column)

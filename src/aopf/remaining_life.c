@@ -399,7 +399,7 @@ static enum num_status draw_lives(const struct outlook *o, int n, double *life)
 			o->filter, threshold, now->direction, LITERAL_STEPS, life);
 	if (bank_ready(o->bank))
 		return bank_draw(o->bank, chances, now->clock, threshold, life);
-	if (o->bank || now->grey.n < GREY_ORDER_MIN)
+	if (o->bank || now->grey.forward.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
 	for (int i = 0; i < n; i++)
 		life[i] = grey_life(&now->grey, threshold, now->direction,
@@ -425,17 +425,14 @@ static void foresee(struct outlook *o, double *cell)
 	free(life);
 }
 
-static void put_factors(const struct outlook *o, double *cell)
+static void put_trends(const struct outlook *o, double *cell)
 {
-	for (int k = 0; k < covariates_count(); k++)
-		cell[k] = bank_ready(o->bank) ? bank_factor(o->bank, k) : NAN;
-}
+	int ready = bank_ready(o->bank);
 
-static void put_weights(const struct outlook *o, double *cell)
-{
-	for (int k = 0; k < WEIGHED; k++)
-		cell[k] = bank_ready(o->bank) ? bank_weight(o->bank, weighed[k].family)
-					      : NAN;
+	for (int k = 0; k < covariates_count(); k++)
+		*cell++ = ready ? bank_factor(o->bank, k) : NAN;
+	for (int k = 0; weights && k < WEIGHED; k++)
+		*cell++ = ready ? bank_weight(o->bank, weighed[k].family) : NAN;
 }
 
 static int life_cells(void)
@@ -498,9 +495,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		foresee(o, cell);
 	now->lives += now->started && !now->failed && wanted;
 	now->left_out += now->failed || !wanted;
-	put_factors(o, cell + life_cells());
-	if (weights)
-		put_weights(o, cell + life_cells() + covariates_count());
+	put_trends(o, cell + life_cells());
 }
 
 /* Says so if the first values may have told the wrong direction, because one or two were

@@ -1,6 +1,5 @@
 /* grey.c - see grey.h */
 #include "life/grey/grey.h"
-#include <limits.h>
 #include <math.h>
 
 void grey_add(struct grey *g, double x, double gap)
@@ -27,34 +26,35 @@ double grey_scale(double x)
 /* Zeros are the same in any scale, so the scale may be set after them. */
 void grey_append(struct grey_series *s, double x, double gap)
 {
+	struct grey *g = &s->forward;
+
 	if (s->scale == 0 && x != 0)
 		s->scale = grey_scale(x);
 	x /= s->scale > 0 ? s->scale : 1;
-	if (s->n++ == 0) {
-		s->oldest = x;
+	if (g->n++ == 0) {
+		g->oldest = x;
 		return;
 	}
-	if (s->n == 2)
+	if (g->n == 2)
 		s->unit = grey_scale(gap);
 	gap /= s->unit;
-	regression_add(&s->fit, s->integral + x * gap / 2, x);
-	s->integral += x * gap;
-	s->span += gap;
+	regression_add(&g->fit, g->tail + x * gap / 2, x);
+	g->tail += x * gap;
+	g->span += gap;
 }
 
 struct grey grey_of(const struct grey_series *s)
 {
-	return (struct grey){ .n = (int)fmin((double)s->n, INT_MAX),
-		.oldest = s->oldest,
-		.span = s->span,
-		.tail = s->integral,
-		.fit = { s->fit.n, s->integral - s->fit.mean_x, s->fit.mean_y, s->fit.xx,
-			-s->fit.xy, s->fit.yy } };
+	struct grey g = s->forward;
+
+	g.fit.mean_x = g.tail - g.fit.mean_x;
+	g.fit.xy = -g.fit.xy;
+	return g;
 }
 
 double grey_rate(const struct grey *g)
 {
-	double most = grey_rate_limit(g->n - 1, g->span);
+	double most = grey_rate_limit(g->fit.n, g->span);
 
 	return isfinite(g->fit.xx) && fabs(g->fit.xy) < most * g->fit.xx
 		       ? g->fit.xy / g->fit.xx
@@ -71,7 +71,7 @@ double grey_residual(const struct grey *g)
 {
 	double sum = g->fit.yy - grey_rate(g) * g->fit.xy;
 
-	return g->n > 3 && sum > 0 ? sum / (g->n - 3) : 0;
+	return g->n > 3 && sum > 0 ? sum / (g->fit.n - 2) : 0;
 }
 
 double grey_forecast(const struct grey *g, double h, double gap)
@@ -80,7 +80,7 @@ double grey_forecast(const struct grey *g, double h, double gap)
 	       next = grey_curve(
 		       lanes_all(grey_level(g)), lanes_all(rate), g->span + h, gap)[0],
 	       newest = g->n > 1 ? g->fit.mean_y - rate * g->fit.mean_x : g->oldest,
-	       reach = grey_reach(grey_rate_limit(g->n - 1, g->span), h);
+	       reach = grey_reach(grey_rate_limit(g->fit.n, g->span), h);
 
 	return fabs(next) > reach * fabs(newest) ? g->fit.mean_y : next;
 }
@@ -96,11 +96,10 @@ double grey_life(const struct grey_series *s, double limit, int direction, doubl
 	if (g.n < GREY_ORDER_MIN)
 		return NAN;
 	rate += g.fit.xx > 0 ? sqrt(grey_residual(&g) / g.fit.xx) * rate_z : 0;
-	level = g.fit.mean_y + sqrt(grey_residual(&g) / (g.n - 1)) * level_z +
+	level = g.fit.mean_y + sqrt(grey_residual(&g) / g.fit.n) * level_z +
 		rate * (g.tail - g.fit.mean_x);
 	limit /= s->scale > 0 ? s->scale : 1;
-	now = grey_curve(
-		lanes_all(level), lanes_all(rate), g.span, g.span / (g.n - 1))[0];
+	now = grey_curve(lanes_all(level), lanes_all(rate), g.span, g.span / g.fit.n)[0];
 	if (direction * (now - limit) >= 0)
 		return 0;
 	time = -log(limit / now) / rate;

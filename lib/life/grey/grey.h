@@ -26,7 +26,7 @@ enum { GREY_ORDER_MIN = 4 }; /* fewest points of a fit */
 
 /* Zero it to start. */
 struct grey {
-	int n;                 /* points taken */
+	long n;                /* points taken */
 	double oldest;         /* the last one taken */
 	double span;           /* steps from it to the newest */
 	double tail;           /* integral of the points newer than it */
@@ -37,14 +37,12 @@ struct grey {
  * newest point is not used). */
 void grey_add(struct grey *g, double x, double gap);
 
-/* The same model of a whole series, oldest point first: keeps forward sums, so that a
- * point costs the same at any length.  Zero it to start. */
+/* The same model of a whole series, oldest point first: a point costs the same at any
+ * length.  Zero it to start. */
 struct grey_series {
-	long n;
-	double scale, unit; /* powers of two, in which the sums are: near the first value
-			     * but 0, and near the first gap */
-	double oldest, span, integral; /* the first point, and sums since then */
-	struct regression fit;         /* of x on the integral up to mid-interval */
+	struct grey forward; /* its fit is of x on the integral up to mid-interval */
+	double scale, unit;  /* powers of two, in which the sums are: near the first value
+			      * but 0, and near the first gap */
 };
 /* The power of two next to |x|, at which its square neither overflows nor underflows. */
 double grey_scale(double x);

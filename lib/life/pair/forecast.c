@@ -295,7 +295,7 @@ enum num_status forecast_add(struct forecast *f, double t, double value, double 
 		return NUM_OK;
 	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
 		return NUM_MEMORY;
-	if (run_in || (par->skip > 0 && f->observed.grey.n == 0))
+	if (run_in || (par->skip > 0 && f->observed.grey.forward.n == 0))
 		observed_begin(&f->observed, m);
 	if (!run_in)
 		observed_add(&f->observed, m, value);

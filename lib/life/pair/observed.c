@@ -53,7 +53,7 @@ void observed_add(struct observed *o, struct moment m, double value)
 	if (dt > 0)
 		o->before = o->last;
 	o->last = m;
-	if (o->grey.n == 0 || dt > 0)
+	if (o->grey.forward.n == 0 || dt > 0)
 		grey_append(&o->grey, value, dt);
 }
 
