@@ -1,12 +1,5 @@
 /* remaining_life.h - the life that a unit has left: options of aopf, and its columns
  *
- *	outlook_open(series, unit_column, clock_column);
- *	struct outlook *o = outlook_new(unit, filter);
- *	for each row
- *		outlook_step(o, &in, &row, cell);
- *	outlook_free(o);
- *	outlook_close();
- *
  * Different units may step at the same time.
  */
 #ifndef REMAINING_LIFE_H

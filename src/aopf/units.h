@@ -1,12 +1,5 @@
 /* units.h - the units of a stream and what is kept of each between its rows; on disk too
  *
- *	struct units *units = units_new(bare);
- *	units_resume(units, path, options);
- *	units_keep(units, path, options);
- *	struct machine *u = units_find(units, series_unit(in), series_unit_name(in));
- *	unit_step(u, &row, cell);
- *	unit_save(units, u);
- *
  * The file of a saved state has two places for each unit, which are written in turn, with
  * a checksum: whatever stops the program, one of them is whole.
  */

@@ -62,29 +62,24 @@ void state_open(struct observations *s, const char *file, const struct pair *pai
 		"diameter" };
 	struct table_in *t = table_open(file);
 
-	*s = (struct observations){ .table = t,
-		.quantity = (enum pair_quantity)state_options.quantity,
-		.scale = 1,
-		.pair = pair };
-	s->time_column = table_find(t, "t");
-	if (s->time_column < 0)
-		s->time_column = table_find(t, "time1");
-	if (s->time_column < 0)
-		s->time_column = table_need(t, "t");
+	*s = (struct observations){
+		.table = t, .quantity = state_options.quantity, .scale = 1, .pair = pair
+	};
+	s->time_column = table_need(
+		t, table_find(t, "t") < 0 && table_find(t, "time1") >= 0 ? "time1" : "t");
 	s->value_column = table_find(t, "state");
 	for (enum pair_quantity q = PAIR_LEAKAGE;
 		q <= PAIR_DEBRIS && s->quantity == PAIR_AUTO && s->value_column < 0; q++)
 		if (table_find(t, columns[q]) >= 0)
-			s->quantity = (enum pair_quantity)q;
+			s->quantity = q;
 	if (s->quantity == PAIR_AUTO)
 		s->quantity = PAIR_LEAKAGE;
 	s->filtered = s->value_column >= 0 && s->quantity != PAIR_DEBRIS;
 	if (!s->filtered)
 		s->value_column = table_find(t, columns[s->quantity]);
 	if (s->value_column < 0)
-		s->value_column = table_find(t, "y");
-	if (s->value_column < 0)
-		s->value_column = table_need(t, columns[s->quantity]);
+		s->value_column = table_need(
+			t, table_find(t, "y") < 0 ? columns[s->quantity] : "y");
 	s->sources_column = table_find(t, "sources");
 	if (s->quantity == PAIR_DEBRIS)
 		s->verdict_column = verdict_column(t);

@@ -1,12 +1,6 @@
 /* observations.h - the wear of a pair as it was observed: rows of a table turned into
  * gaps
  *
- *	struct observations s;
- *	state_open(&s, path, &pair);
- *	while (state_next(&s))
- *		... s.t, s.gap ...
- *	table_close(s.table);
- *
  * Anything that is not a state of growing time ends the program with one line that names
  * file and line.
  */
