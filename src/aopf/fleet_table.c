@@ -13,12 +13,13 @@ static struct fleet *fleet; /* NULL: none has been read */
 static char **names;        /* of its units */
 static int n_units;
 
-void fleet_table_read(const struct fleet_table_par *par, const struct series *like,
+void fleet_table_read(const char *file, const char *unit_column, const char *clock_column,
+	double threshold, int direction, const struct series *like,
 	struct reasons *doubts)
 {
-	struct series *in = series_open(par->file, par->unit_column);
+	struct series *in = series_open(file, unit_column);
 	struct table_in *table = series_table(in);
-	int clock = par->clock_column ? table_find(table, par->clock_column) : -1;
+	int clock = clock_column ? table_find(table, clock_column) : -1;
 	enum num_status status;
 	int failed, carried_on, n;
 	char y[UNIT_WORD];
@@ -28,7 +29,7 @@ void fleet_table_read(const struct fleet_table_par *par, const struct series *li
 		table_ratio(table, series_value_column(in), y));
 	if (clock >= 0)
 		table_set_scale(table, clock, timeunit_ratio(table, clock));
-	fleet = fleet_new(par->threshold, par->direction);
+	fleet = fleet_new(threshold, direction);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in)) {
 		if (series_units(in) > n_units) {
@@ -41,7 +42,7 @@ void fleet_table_read(const struct fleet_table_par *par, const struct series *li
 				series_value(in));
 	}
 	if (status == NUM_DOMAIN)
-		die(EXIT_RUN, "%s: line %ld: operating time decreases", par->file,
+		die(EXIT_RUN, "%s: line %ld: operating time decreases", file,
 			table_line(table));
 	if (status == NUM_OK)
 		status = fleet_build(fleet, &failed, &carried_on);
@@ -49,11 +50,11 @@ void fleet_table_read(const struct fleet_table_par *par, const struct series *li
 		die(EXIT_RUN, "no memory for the fleet");
 	fleet_shapes(fleet, &n);
 	if (n == 0)
-		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
-			par->file, series_units(in));
+		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with", file,
+			series_units(in));
 	if (n > BANK_PATHS_MAX)
-		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d",
-			par->file, BANK_PATHS_MAX, n);
+		die(EXIT_RUN, "%s: want at most %d units that show wear, got %d", file,
+			BANK_PATHS_MAX, n);
 	reasons_add(doubts, table_doubted(table));
 	stats_set("fleet_units", failed);
 	stats_set("fleet_units_carried_on", carried_on);

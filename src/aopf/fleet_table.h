@@ -7,17 +7,11 @@
 #include "life/trend/bank.h"
 #include <stdint.h>
 
-struct fleet_table_par {
-	const char *file;
-	const char *unit_column;
-	const char *clock_column; /* of operating times; NULL: none */
-	double threshold;
-	int direction; /* 1 or -1 */
-};
-
 /* Reads the file into the units of the series that is predicted; ages are operating times
- * if it has the column of the clock.  Reasons for which it is doubtful are added. */
-void fleet_table_read(const struct fleet_table_par *par, const struct series *like,
+ * if there is a column of the clock, not NULL, and the file has it.  direction: 1 or -1.
+ * Reasons for which it is doubtful are added. */
+void fleet_table_read(const char *file, const char *unit_column, const char *clock_column,
+	double threshold, int direction, const struct series *like,
 	struct reasons *doubts);
 /* The paths of the units; NULL: no table has been read. */
 const struct bank_shape *fleet_table_shapes(int *n);

@@ -204,10 +204,8 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 	if (!chances)
 		die(EXIT_RUN, "no memory");
 	if (fleet_file)
-		fleet_table_read(
-			&(struct fleet_table_par){ fleet_file, unit, clock_column,
-				outlook_threshold, direction == UP ? 1 : -1 },
-			in, &doubts);
+		fleet_table_read(fleet_file, unit, clock_column, outlook_threshold,
+			direction == UP ? 1 : -1, in, &doubts);
 	if (events_file)
 		event_list_read(events_file, unit, &doubts);
 }

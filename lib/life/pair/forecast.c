@@ -165,12 +165,6 @@ static double wear_out(struct forecast *f, long i, double left, double tau)
 			     f->par.rule == RATE_MEAN ? 0 : w->step_variance, f->rng);
 }
 
-/* Time from t to the end of the step in which large particles become too many. */
-static double until_large(long step, double step_time, double t)
-{
-	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
-}
-
 /* Fills life[] at the latest observation and counts it.  passage: with RATE_FILTER,
  * samples of the time to the limit (NULL: not yet known), which include the error of the
  * observations. */
@@ -212,9 +206,9 @@ static void predict(struct forecast *f, const double *passage)
 			f->life[i] = wear_out(f, i, here, tau);
 		else
 			f->life[i] = gamma_passage(here, rate, 0, NULL);
-		if (f->path && !isnan(par->critical))
+		if (f->path && f->path[i].large_step > 0) /* until its end */
 			f->life[i] = fmin(f->life[i],
-				until_large(f->path[i].large_step, tau, o->last.t));
+				fmax((double)f->path[i].large_step * tau - o->last.t, 0));
 	}
 }
 

@@ -12,11 +12,10 @@
  * from streams (seed, first + i), so that any split of an ensemble gives the same
  * numbers.
  *
- * With RATE_FILTER the bank of bank.h follows the observed value.  It has one more
- * coordinate: if the value is a leakage, one in which the gap grows at a constant rate,
- * and otherwise one in which the leakage does.  The rate may change in past and future.
- * If the step time of the paths is known, the bank follows the gap instead, with the rate
- * of the paths as prior.
+ * With RATE_FILTER the bank of bank.h follows the observed value or, if the step time of
+ * the paths is known, the gap, with the rate of the paths as prior.  It has one more
+ * coordinate: if it follows a leakage, one in which the gap grows at a constant rate, and
+ * otherwise one in which the leakage does.
  *
  *	struct forecast *f = forecast_new(&par, partition);
  *	forecast_add(f, t, value, gap, 0, NULL);
