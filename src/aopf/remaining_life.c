@@ -93,9 +93,6 @@ struct opt outlook_plant_rows[] = {
 	OPT_END
 };
 
-/* Of the literal model: a particle that needs more never reaches the threshold. */
-enum { LITERAL_STEPS = 1000 };
-
 /* An alarm is cleared once the quantile exceeds its level by this factor.  In 20 noisy
  * series of 150 rows with exponential growth and levels of 9 and 3 % of the life, 1, 1.1,
  * 1.25, 1.5 and 2 raise it 185, 123, 83, 31 and 8 times and leave 1753, 1903, 2130, 2753
@@ -393,8 +390,7 @@ static enum num_status draw_lives(const struct outlook *o, int n, double *life)
 	double threshold = outlook_threshold;
 
 	if (model == LITERAL)
-		return adaptive_lives(
-			o->filter, threshold, now->direction, LITERAL_STEPS, life);
+		return adaptive_lives(o->filter, threshold, now->direction, life);
 	if (bank_ready(o->bank))
 		return bank_draw(o->bank, chances, now->clock, threshold, life);
 	if (o->bank || now->grey.forward.n < GREY_ORDER_MIN)

@@ -10,6 +10,7 @@
 enum { RECENT = 20 }; /* rows whose errors tell what is usual */
 /* States that determine a grey model; fewer are continued by the last one. */
 enum { MODEL = 3 };
+enum { STEPS = 1000 }; /* of a path: one that needs more never reaches its end */
 
 /* Of an observation, in recent errors of noise and model: farther than this from what was
  * expected it is an outlier, and no particle that far from it follows it.  This and
@@ -357,7 +358,7 @@ static size_t end_paths(const struct filter *f, size_t n, double limit, int dire
 }
 
 enum num_status adaptive_lives(
-	struct adaptive *a, double threshold, int direction, int steps, double *life)
+	struct adaptive *a, double threshold, int direction, double *life)
 {
 	int order = order_chosen(a->order);
 	double limit = threshold / a->scale, noise = observation_noise(a),
@@ -373,7 +374,7 @@ enum num_status adaptive_lives(
 	for (size_t i = 0; i < n; i++)
 		life[i] = INFINITY;
 	left = end_paths(f, n, limit, direction, 0, 0, life);
-	for (int k = 0; k < steps && left > 0; k++) {
+	for (int k = 0; k < STEPS && left > 0; k++) {
 		forecast_particles(a, f, NULL, order, gap, noise);
 		for (size_t i = 0; i < n; i++)
 			if (life[i] < INFINITY) /* else it might overflow */

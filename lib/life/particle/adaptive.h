@@ -50,9 +50,9 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 /* The literal recursion (4-21): every particle continues step by step by its own model,
  * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
  * life[N] with the time from the last row to its first passage of the threshold (linear
- * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */
+ * within a step), INFINITY beyond 1000 steps.  NUM_DOMAIN: no model yet. */
 enum num_status adaptive_lives(
-	struct adaptive *a, double threshold, int direction, int steps, double *life);
+	struct adaptive *a, double threshold, int direction, double *life);
 /* Events so far; outliers are skipped. */
 struct adaptive_counts {
 	unsigned long resamplings, outliers, restarts;
