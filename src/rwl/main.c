@@ -293,7 +293,7 @@ static int check_state(
 	if (bank && bank_stuck(bank))
 		status = doubt(out, "the last values are equal",
 			": the sensor sticks or is at the end of its range");
-	else if (s->pair && s->course.n > 0 &&
+	else if (s->course.n > 0 &&
 		 ((bank && bank_ceased(bank)) ||
 			 plateau_reached(&s->course, pair_limit(s->pair), -INFINITY, 0)))
 		status = doubt(out, "the gap has ceased to grow",

@@ -222,7 +222,6 @@ static void check_sparse_draws(void)
 	enum { N = 4000 };
 	struct partition *p = partition_new(fragment, 1, 1);
 	gsl_rng *rng = rng_new(1, 0, RNG_BOOTSTRAP);
-	struct partition_wear w;
 	double mean, error;
 	int none = 0;
 
@@ -234,7 +233,7 @@ static void check_sparse_draws(void)
 	near(partition_count(p, 0, &mean, &error) / 4000000000001., 1, 1e-15,
 		"realisations without particles are counted");
 	for (int i = 0; i < N; i++) {
-		w = partition_replicate(p, 0, rng);
+		partition_replicate(p, 0, rng);
 		none += partition_large(p, 0.5, 1) == 0;
 	}
 	near((double)none / N, exp(-2), 4 * sqrt(0.135 * 0.865 / N),
