@@ -116,7 +116,7 @@ struct outlook {
 	struct adaptive *filter;
 	struct bank *bank; /* NULL before the first value, for GREY and for LITERAL */
 	struct outlook_state {
-		int started, direction;
+		int direction; /* 0 before the first value */
 		struct rescaled scale;
 		struct plateau course;
 		struct grey_series grey;        /* of the filtered states, for GREY */
@@ -264,7 +264,7 @@ void outlook_pass(struct outlook *o, struct state *s)
 		start(o);
 	if (o->bank)
 		bank_pass(o->bank, s);
-	if (o->now.started)
+	if (o->now.direction != 0)
 		return;
 	bank_free(o->bank);
 	o->bank = NULL;
@@ -454,21 +454,20 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 
 	if (now->rows == 0)
 		now->first = in->clock;
-	if (!now->started && !isnan(in->y)) {
+	if (now->direction == 0 && !isnan(in->y)) {
 		int up = direction == AUTO ? in->y <= outlook_threshold : direction == UP;
 
-		now->started = 1;
 		now->direction = up ? 1 : -1;
 		start(o);
 	}
-	if (now->started)
+	if (now->direction != 0)
 		learn(o, in, filtered);
 	now->rows++;
 	if (!isnan(in->y))
 		now->beyond = now->direction * (in->y - outlook_threshold) >= 0
 				      ? now->beyond + 1
 				      : 0;
-	now->failed = now->started && now->beyond >= persist;
+	now->failed = now->beyond >= persist;
 	now->leapt = now->failed &&
 		     (now->leapt || (now->beyond == persist && bank_ready(o->bank) &&
 					    bank_held(o->bank) >= persist));
@@ -485,9 +484,9 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		cell[i] = NAN;
 	if (now->failed && believed)
 		put_draws(o, (double[]){ 0 }, 1, INFINITY, cell);
-	else if (now->started && wanted)
+	else if (now->direction != 0 && wanted)
 		foresee(o, cell);
-	now->lives += now->started && !now->failed && wanted;
+	now->lives += now->direction != 0 && !now->failed && wanted;
 	now->left_out += now->failed || !wanted;
 	put_trends(o, cell + life_cells());
 }
