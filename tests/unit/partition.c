@@ -265,7 +265,7 @@ static void check_groups(void)
 		"groups keep the counts of particles");
 	near(w.step_variance, 0, 1e-12, "equal volumes have no variance");
 	for (int i = 0; i < N; i++) {
-		w = partition_replicate(p, 0, rng);
+		partition_replicate(p, 0, rng);
 		first += partition_large(p, 0.1, 0) == 1;
 	}
 	ok(first > 0.4 * N && first < 0.6 * N,
