@@ -128,7 +128,7 @@ static enum separate_status learn_crowd(struct examples *ex, struct calibration 
 }
 
 /* Chi-square per degree of freedom of a guess beside which no other shape is tried, and
- * of one beside which no other duration and no single event is. */
+ * of one beside which no other duration is. */
 static const double GOOD = 1.1, FAIR = 2;
 
 /* The lag of the lowest autocorrelation may be hidden by that of a train of pulses.  A
