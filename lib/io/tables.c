@@ -438,14 +438,16 @@ static int is_header(const struct table_in *t)
  */
 static void check_units(struct table_in *t)
 {
-	int doubted = t->same_units && table_key(t, "units");
+	if (t->unstated) {
+		int doubted = t->same_units && table_key(t, "units");
 
-	for (int i = 0; t->scale && i < t->ncolumns; i++)
-		doubted |= t->scale[i].factor != 1;
-	if (t->unstated && doubted)
-		die(EXIT_RUN,
-			"%s: line %ld: the header before has no '# units', that of the table before has",
-			t->name, t->number);
+		for (int i = 0; t->scale && i < t->ncolumns; i++)
+			doubted |= t->scale[i].factor != 1;
+		if (doubted)
+			die(EXIT_RUN,
+				"%s: line %ld: the header before has no '# units', that of the table before has",
+				t->name, t->number);
+	}
 	t->stated = t->unstated = 0;
 }
 
