@@ -345,6 +345,9 @@ for list in 'turned:y [um]\tX [um]\tz [m]' 'last:Height [m]\tX [um]\ty [um]'; do
 done
 { printf 'n\tX\ty\tz\n' && awk '{ print NR "\t" $1 "\t" $2 "\t" $3 }' points.txt; } >columns.txt
 fails "a column before the points" 1 '4 columns look like points' surfimport --pixel 3umx1um --height-unit 1m columns.txt
+printf 'n;a;x;y\n1;2;3\n2;2;4\n1;3;5\n2;3;6\n' >columns.txt
+fails "a heading that names more columns than there are" 1 'want a heading of these names' \
+	surfimport --pixel 1um --height-unit 1um columns.txt
 printf 'ncols 3\r\nNODATA_value  -9999 \r\n1 2 3\r\n4 -9999 6\r\n' | surfimport --pixel 1um --height-unit 1m >c.nrrd
 is "the heading of an Arc/Info grid tells the number of missing samples" "$(heights c.nrrd)" '1 2 3 4 nan 6'
 surfimport --pixel 6umx2um --height-unit 1m mixed.txt >c.nrrd

@@ -517,7 +517,8 @@ static void sort_columns(struct text *t, const int column[3])
 /* Points x, y, z of a grid, in any order; 0 if the rows are none. */
 static int points_read(struct text *t, const struct told *told, struct record *r)
 {
-	int column[3], named = named_points(t, column);
+	int column[3], named = named_points(t, column) &&
+			       (t->columns > 3 || (column[0] < 3 && column[1] < 3));
 	struct grid g;
 	enum points found;
 	double dx, dy, unit, *z;
@@ -525,7 +526,7 @@ static int points_read(struct text *t, const struct told *told, struct record *r
 
 	if (t->columns < 3)
 		return 0;
-	if (t->columns == 3 && named && column[0] < 3 && column[1] < 3)
+	if (t->columns == 3 && named)
 		sort_columns(t, column);
 	else
 		column[0] = 0, column[1] = 1, column[2] = 2;
