@@ -25,9 +25,9 @@ enum filter_ends {
 enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double *z,
 	double nesting, enum filter_ends ends, double *out);
 
-/* By how much of their amplitude waves of two samples pass a filter more than its index
- * states, which of all waves are those that pass most in excess: the weights are those of
- * a Gaussian at the samples, too few of which lie on a narrow one. */
+/* The share of the amplitude of waves of two samples that passes a filter, less the share
+ * that its index states.  The weights are those of a Gaussian at the samples: few of them
+ * do not follow a narrow one, and of all waves, these pass most in excess. */
 enum num_status surface_gauss_excess(
 	double step, double nesting, enum filter_ends ends, double *excess);
 
