@@ -40,6 +40,8 @@ column state out.tsv | awk 'NR > 60 { e = $1 - (1.5 + 1.3 * (NR - 1) / 1186); s 
 near "states are closer to the truth than observations" "$(cat rms)" 0.03 0.02
 column ess out.tsv | awk '$1 !~ /^[0-9]/ || $1 + 0 < 1 - 1e-9 || $1 + 0 > 300 + 1e-9 { bad = 1 } END { print (NR ? bad + 0 : "no rows") }' >bad
 is "the effective sample size is between 1 and N" "$(cat bad)" 0
+printf 't\ty\n' | aopf >out 2>err
+is "a table without rows is told" "$? $(grep -vc '^#' out) $(cat err)" '0 1 aopf: standard input: no rows'
 
 printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv
 is "every column has a unit" "$(aopf -y 2 unit.tsv | sed -n 's/^# units: //p')" \

@@ -28,6 +28,8 @@ near "a volume is one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
 # Without fragments: (4-29) over all, (4-28) over the last interval.
 ok "--wear-rate mean uses the mean rate of the observations" rwl --threshold-gap 15um gap.tsv
 near "2 um at 1 um/h give 2 h" "$(cell out 4 mean)" 7200 1e-6
+head -n 1 gap.tsv | rwl --threshold-gap 15um >norows 2>err
+like "a state without rows is told" "$? $(cat err)" '^0 rwl: standard input: no rows'
 is "one observation gives no prediction" "$(cell out 1 mean)" nan
 ok "--wear-rate last uses the last rate of the observations" rwl --wear-rate last --threshold-gap 21um gap.tsv
 near "1 um at 7 um/h gives 1/7 h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6

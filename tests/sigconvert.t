@@ -211,6 +211,48 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	else
 		skip "an Ogg stream that is cut off" "no sox"
 	fi
+	# other FORMAT BYTES: one channel, whose header announces 3000 bytes
+	other() {
+		perl -e 'my ($format, $n) = @ARGV; my $x = "\0" x $n;
+			sub v5 { my ($columns, $name, $data) = @_;
+				my $a = pack("V8", 6, 8, 6, 0, 5, 8, 1, $columns) .
+					pack("V2", 1, length $name) . $name .
+					"\0" x (-length($name) % 8) . $data;
+				pack("V2", 14, length $a) . $a }
+			print $format eq "dns" ? "dns." . pack("V5", 24, 3000, 6, 1000, 1) . $x
+				: $format eq "mat4"
+				? pack("V5 Z11 d<", 0, 1, 1, 0, 11, "samplerate", 1000) .
+					pack("V5 Z9", 0, 1, 375, 0, 9, "wavedata") . $x
+				: $format eq "mat5"
+				? pack("a124 v a2", "MATLAB 5.0 MAT-file", 0x100, "IM") .
+					v5(1, "samplerate", pack("v4", 4, 2, 1000)) .
+					v5(375, "wavedata", pack("V2", 9, 3000) . $x)
+				: $format eq "voc"
+				? "Creative Voice File\x1a" . pack("v3", 26, 0x114, 0x111f) .
+					pack("V V C2 v V", 9 | 3012 << 8, 1000, 16, 1, 4, 0) . $x . "\0"
+				: "RIFF" . pack("V", 7644) . "WAVEfmt " .
+					pack("VvvVVvv", 16, 1, 1, 1000, 2000, 2, 16) .
+					("LIST" . pack("Va8Va4", 16, "INFOINAM", 4, "name")) x 192 .
+					"data" . pack("V", 3000) . $x' "$@"
+	}
+	for format in dns mat4 mat5 voc; do
+		other $format 3000 >whole.$format
+		sigconvert --from sound -o channels whole.$format >channels.tsv 2>err
+		is "a recording as $format is read whole and said to be" "$? $(column frames channels.tsv | tail -n 1)$(cat err)" \
+			"0 $(case $format in dns) echo 750 ;; voc) echo 1500 ;; *) echo 375 ;; esac)"
+		other $format 2400 >cut.$format
+		fails "a recording as $format that is cut off" 1 "cut.$format: \(want 3000 bytes\|the recording is truncated\)" \
+			sigconvert --from sound cut.$format
+	done
+	for format in dns mat5 voc; do
+		ok "a recording as $format is recognised" sigconvert whole.$format
+	done
+	# The notes of libsndfile end before the size of the samples.
+	other wav 2400 >long.wav
+	fails "a recording whose size is unknown" 3 'long.wav: whether the recording is truncated is unknown' \
+		sh -c 'sigconvert -o raw long.wav >out.raw'
+	is "the signal says so" "$(sigconvert long.wav 2>err | sigconvert --output text | grep doubtful)" \
+		'# doubtful: whether the recording is truncated is unknown'
 	sensorsim --uniform 50um:150um --number 5 --duration 3s --noise 1mV | sigconvert --output flac 2>err >whole.flac
 	head -c "$(($(wc -c <whole.flac) / 2))" whole.flac >cut.flac
 	fails "a FLAC file that is cut off" 1 'cut.flac: ' sigconvert --output raw cut.flac

@@ -281,6 +281,8 @@ static void read_rows(
 	}
 	finish_block(&b);
 	pending = NULL;
+	if (series_units(in) == 0)
+		warn("%s: no rows", table_name(series_table(in)));
 	if (resume_file)
 		stats_set("rows_before", (double)before);
 	free(b.item);

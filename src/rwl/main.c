@@ -208,6 +208,8 @@ static void follow(struct observations *s, struct lifetable *out, struct forecas
 		check_life(out, s->t);
 		stats_add("rows", 1);
 	}
+	if (s->rows == 0)
+		warn("%s: no rows", table_name(s->table));
 }
 
 /* The command line that reproduces the output: the state comes through a pipe if it

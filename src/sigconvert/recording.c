@@ -86,10 +86,12 @@ static double frame_bytes(const SF_INFO *info)
 }
 
 /* libsndfile reads a truncated file without an error, but notes the size of the samples
- * in its log, as in "data : 20000 (should be 11956)". */
-static void check_whole(const struct recording *r, const SF_INFO *info)
+ * in its log, as in "data : 20000 (should be 11956)", or that the file is truncated.  Of
+ * other types than these it notes nothing, or not always. */
+static void check_whole(struct recording *r, const SF_INFO *info)
 {
-	/* Where the size stands, and how many of its bytes are no samples. */
+	/* Behind what the size stands, and how many of its bytes are no samples.  Without
+	 * a chunk a truncated file is an error of reading. */
 	static const struct {
 		int format;
 		const char *chunk;
@@ -97,25 +99,41 @@ static void check_whole(const struct recording *r, const SF_INFO *info)
 	} known[] = { { SF_FORMAT_WAV, "\ndata :", 0 },
 		{ SF_FORMAT_WAVEX, "\ndata :", 0 },
 		{ SF_FORMAT_RF64, "  Data size :", 0 }, { SF_FORMAT_W64, "\ndata :", 24 },
-		{ SF_FORMAT_CAF, "\ndata :", 4 }, { SF_FORMAT_AIFF, "\n SSND :", 8 } };
+		{ SF_FORMAT_CAF, "\ndata :", 4 }, { SF_FORMAT_AIFF, "\n SSND :", 8 },
+		{ SF_FORMAT_AU, "\n  Data Size   :", 0 },
+		{ SF_FORMAT_MAT5, "Name : wavedata\n", 0 },
+		{ SF_FORMAT_MAT4, "seems to be truncated", 0 },
+		{ SF_FORMAT_VOC, "Seems to be a truncated", 0 },
+		{ SF_FORMAT_FLAC, NULL, 0 }, { SF_FORMAT_OGG, NULL, 0 } };
 	/* Recorders that cannot seek announce 2^32 - 1 bytes or, as sox does, 0x7ffff000
 	 * or 0x7f000000 less a part of a frame. */
 	const double streamed = 0x7effff00;
 	double whole = (double)info->frames * frame_bytes(info), told, there;
 	char log[1 << 14] = "";
 	const char *at = NULL;
-	int head = 0, n;
+	int head = 0, type = info->format & SF_FORMAT_TYPEMASK, checked = 0, n;
 
 	sf_command(r->sound, SFC_GET_LOG_INFO, log, sizeof log);
 	if (strstr(log, "without an End-Of-Stream flag"))
 		die(EXIT_RUN, "%s: the recording ends before its end mark", r->name);
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-		if ((info->format & SF_FORMAT_TYPEMASK) != known[i].format)
+		if (type != known[i].format)
 			continue;
 		head = known[i].head;
-		at = strstr(log, known[i].chunk);
+		at = known[i].chunk ? strstr(log, known[i].chunk) : NULL;
 		at = at ? at + strlen(known[i].chunk) : NULL;
+		checked = at || !known[i].chunk || type == SF_FORMAT_MAT4 ||
+			  type == SF_FORMAT_VOC;
 	}
+	if (at && type == SF_FORMAT_MAT5 && (at = strstr(at, "Size :")))
+		at += strlen("Size :");
+	if (!checked) {
+		r->format.doubt =
+			xstrdup("whether the recording is truncated is unknown");
+		warn("%s: %s", r->name, r->format.doubt);
+	}
+	if (at && (type == SF_FORMAT_MAT4 || type == SF_FORMAT_VOC))
+		die(EXIT_RUN, "%s: the recording is truncated", r->name);
 	n = at ? sscanf(at, "%lf (should be %lf)", &told, &there) : 0;
 	if (n == 2 && told >= streamed) {
 		told = there; /* may be padded to an even number */
@@ -296,7 +314,7 @@ static void sound_done(struct recording_out *o)
 static enum recording_from recognise(struct input *in)
 {
 	static const char *const sounds[] = { "RIFF", "RIFX", "fLaC", "FORM", "RF64",
-		"caff", "OggS" };
+		"caff", "OggS", "riff", "dns.", "Creative Voice File", "MATLAB 5.0" };
 
 	for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
 		if (input_begins(in, sounds[i]))
