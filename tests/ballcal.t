@@ -117,6 +117,15 @@ is "pairs of balls that hide one another are counted and marked" "$? $(grep -c '
 awk 'BEGIN { print "amplitude\tvelocity"; for (i = 0; i < 40; i++) printf "%.17g\t1\n", 1 + 0.001 * i }' >drift.tsv
 ballcal --balls drift.tsv:100um >cal.tsv 2>err
 is "pulses spread evenly, as by a drift, are of one ball" "$? $(value outlier_p)" "0 1"
+# 200 quantiles of a lognormal law of deviation 0.4, by a lambda law; the highest is 4.4 deviations
+# from the mean, and 2.8 on the scale of logarithms
+awk 'BEGIN { print "amplitude\tvelocity"; for (i = 0.5; i < 200; i++) {
+	z = 4.91 * ((i / 200)^0.14 - (1 - i / 200)^0.14); printf "%.17g\t1\n", exp(0.4 * z) } }' >lognormal.tsv
+ballcal --balls lognormal.tsv:100um >cal.tsv 2>err
+is "a scatter of 40 % that multiplies has no outliers" "$? $(wc -l <err)" "0 0"
+awk 'NR == 1 { print; next } { $2 = 1; print log($1) / 0.4 * 0.25 + 1 "\t" $2 }' lognormal.tsv | awk '$1 > 0.2 || NR == 1' >normal.tsv
+ballcal --balls normal.tsv:100um >cal.tsv 2>err
+is "neither has one of 25 % that adds" "$? $(wc -l <err)" "0 0"
 awk 'NR != 5' two.tsv >single.tsv
 ballcal --balls single.tsv:100um >cal.tsv 2>err
 is "the others are not marked" "$? $(wc -l <err)" "0 0"

@@ -117,26 +117,32 @@ static size_t first_within(const struct pulses *p, size_t from, double low, doub
 
 /* The balls of one table are equal.  Pulses of other particles among theirs change the
  * mean, and the scatter of equal pulses is unknown.  Overlapping pulses scatter by errors
- * of their own. */
+ * of their own.  Noise adds to amplitudes, and what multiplies them, as the path of a
+ * ball does, to their logarithms: outliers are those of either scale. */
 static void compare(struct pulses *p, size_t from, const char *name)
 {
 	size_t n = 0;
-	double *a = xcalloc(p->n - from, sizeof *a);
-	struct line_outliers other;
+	double *a = xcalloc(2 * (p->n - from), sizeof *a), *ln = a + (p->n - from);
+	struct line_outliers other, scaled;
 
 	for (size_t i = from; i < p->n; i++)
 		if (p->pulse[i].alone)
-			a[n++] = exp(p->pulse[i].response);
+			ln[n++] = p->pulse[i].response;
 	if (n < 3) {
 		free(a);
 		return;
 	}
-	sort_numbers(a, n);
+	sort_numbers(ln, n);
+	for (size_t i = 0; i < n; i++)
+		a[i] = exp(ln[i]);
 	if (a[n - 1] - a[0] <= 1e-12 * a[n - 1]) { /* rounding */
 		warn("%s: all %zu pulses are equal: their scatter is unknown", name, n);
 		p->equal++;
 	}
 	other = line_outliers(a, n);
+	scaled = line_outliers(ln, n);
+	if (scaled.p > other.p)
+		other = scaled;
 	other.p = fmin(1, balls.n * other.p);
 	if (other.p < UNLIKELY) {
 		double low = a[other.first], high = a[other.first + other.count - 1];
