@@ -55,6 +55,13 @@ for begin in 1600 1764489600; do
 		like "a warning says so" "$(cat err)" 'no particle in the first 1.76449e.09 s of 1.76449e.09 s: times that do not begin at 0'
 	fi
 done
+# A steady rate of one in 100 s that is counted from 3000 s: 0.4^19 = 3e-8.
+awk 'BEGIN { print "diameter\ttime1"; for (i = 0; i < 20; i++) print "1e-4\t" 3000 + 100 * i }' >onset.tsv
+debriscount --output trend --period 500s onset.tsv >late.out 2>err
+is "periods without particles before the first one are marked, since they make a trend" \
+	"$? $(grep -c 'empty periods and a trend' err) $(grep '# doubtful' late.out)" "3 1 # doubtful: times do not begin at 0"
+debriscount --output trend --period 500s --duration 5000s onset.tsv >late.out 2>err
+is "unless the duration is stated" "$? $(wc -l <err)" "0 0"
 printf 'diameter\ttime1\tverdict\nnan\t5\tshock\nnan\t9\tshock\n' >shocks.tsv
 fails "a record of events alone, whose length is unknown" 1 'no particle after 0 s: specify the length' debriscount shocks.tsv
 debriscount --duration 10s shocks.tsv >late.out 2>err

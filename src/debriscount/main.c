@@ -268,11 +268,12 @@ static double count_rows(
 		groups_doubtful(groups, "unresolved sections reach beyond their period");
 	}
 	/* Of particles at random times as many begin so late with this chance. */
-	if (number > 0 && ct >= 0 && isnan(duration) && isnan(period) &&
+	if (number > 0 && ct >= 0 && isnan(duration) &&
 		pow(1 - first / last, number - 1) < UNLIKELY) {
 		warn("no particle in the first %g s of %g s: times that do not begin at 0 make "
-		     "rates too low; subtract their beginning, or specify --duration",
-			first, last);
+		     "%s; subtract their beginning, or specify --duration",
+			first, last,
+			isnan(period) ? "rates too low" : "empty periods and a trend");
 		groups_doubtful(groups, "times do not begin at 0");
 	}
 	if (records > 1 && !isnan(duration))
