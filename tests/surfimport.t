@@ -348,6 +348,13 @@ fails "a column before the points" 1 '4 columns look like points' surfimport --p
 printf 'n;a;x;y\n1;2;3\n2;2;4\n1;3;5\n2;3;6\n' >columns.txt
 fails "a heading that names more columns than there are" 1 'want a heading of these names' \
 	surfimport --pixel 1um --height-unit 1um columns.txt
+# An Arc/Info grid that is cut off, and one whose rows are wrapped
+printf 'ncols 3\nnrows 3\nNODATA_value -9999\n1 2 3\n4 5 6\n' >cut.asc
+fails "a grid with fewer rows than its heading states" 1 'want 3 x 3 heights, as ncols and nrows state, got 3 x 2' \
+	surfimport --pixel 1um --height-unit 1m cut.asc
+printf 'NCOLS 6\nNROWS 1\n1 2 3\n4 5 6\n' >wrapped.asc
+fails "a grid with shorter rows than its heading states" 1 'want 6 x 1 heights, as ncols and nrows state, got 3 x 2' \
+	surfimport --pixel 1um --height-unit 1m wrapped.asc
 printf 'ncols 3\r\nNODATA_value  -9999 \r\n1 2 3\r\n4 -9999 6\r\n' | surfimport --pixel 1um --height-unit 1m >c.nrrd
 is "the heading of an Arc/Info grid tells the number of missing samples" "$(heights c.nrrd)" '1 2 3 4 nan 6'
 surfimport --pixel 6umx2um --height-unit 1m mixed.txt >c.nrrd

@@ -62,7 +62,8 @@ struct text {
 	struct reasons doubts; /* of the comments "# doubtful:" */
 	double width, height;  /* of the surface, m, and the unit of heights, m, of the */
 	double unit;           /* comments that Gwyddion writes; NAN if there are none */
-	double missing;        /* the NODATA_value of an Arc/Info grid, else NAN */
+	/* What the headings of an Arc/Info grid state, else NAN. */
+	double missing, nx, ny;
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -240,19 +241,26 @@ static double length_of(const char *s)
 	return v * unit_named(unit, strlen(unit));
 }
 
-/* "NODATA_value  -9999" stands among the headings of an Arc/Info grid. */
+/* Lines such as "NODATA_value  -9999", the headings of an Arc/Info grid. */
 static void read_heading(struct text *t, const char *s)
 {
-	static const char name[] = "nodata_value";
-	const size_t n = sizeof name - 1;
-	char *end;
-	double v;
+	const struct {
+		const char *name;
+		double *value;
+	} known[] = { { "nodata_value", &t->missing }, { "ncols", &t->nx },
+		{ "nrows", &t->ny } };
 
-	if (strncasecmp(s, name, n) != 0)
-		return;
-	v = decimal_parse(s + n + strspn(s + n, " \t"), &end);
-	if (!end[strspn(end, " \t")])
-		t->missing = v;
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+		size_t n = strlen(known[i].name);
+		char *end;
+		double v;
+
+		if (strncasecmp(s, known[i].name, n) != 0)
+			continue;
+		v = decimal_parse(s + n + strspn(s + n, " \t"), &end);
+		if (!end[strspn(end, " \t")])
+			*known[i].value = v;
+	}
 }
 
 static void read_comment(struct text *t, const char *s)
@@ -608,7 +616,9 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		.width = NAN,
 		.height = NAN,
 		.unit = NAN,
-		.missing = NAN };
+		.missing = NAN,
+		.nx = NAN,
+		.ny = NAN };
 	char *text = plain(c);
 	double dx, dy, unit, *z;
 
@@ -628,6 +638,12 @@ void text_read(const struct content *c, const struct told *told, struct record *
 			die(EXIT_RUN,
 				"%s: line %ld: an empty line between rows: want a single matrix",
 				c->name, t.inner);
+		t.nx = isnan(t.nx) ? t.columns : t.nx;
+		t.ny = isnan(t.ny) ? (double)t.rows : t.ny;
+		if (t.nx != t.columns || t.ny != (double)t.rows)
+			die(EXIT_RUN,
+				"%s: want %g x %g heights, as ncols and nrows state, got %d x %ld",
+				c->name, t.nx, t.ny, t.columns, t.rows);
 		refuse_points(&t);
 		refuse_positions(&t);
 		dx = isnan(t.height) ? NAN : t.width / t.columns;
