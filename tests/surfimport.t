@@ -348,6 +348,13 @@ fails "a column before the points" 1 '4 columns look like points' surfimport --p
 printf 'n;a;x;y\n1;2;3\n2;2;4\n1;3;5\n2;3;6\n' >columns.txt
 fails "a heading that names more columns than there are" 1 'want a heading of these names' \
 	surfimport --pixel 1um --height-unit 1um columns.txt
+# A Gwyddion text of 4 x 4 heights that ends after three rows
+printf '# Width: 4.00 um\n# Height: 4.00 um\n# Value units: m\n1 2 3 5\n4 5 6 8\n7 8 9 9\n' >cut.txt
+surfimport cut.txt >cut.nrrd 2>err
+is "rows of another spacing than columns are told" "$? $(cat err)" \
+	"0 surfimport: cut.txt: heights are 1e-06 m apart along x and 1.33333e-06 m along y: are all rows there?"
+surfimport --pixel 1umx1.3333um cut.txt >cut.nrrd 2>err
+is "unless --pixel confirms them" "$? $(wc -l <err)" "0 0"
 # An Arc/Info grid that is cut off, and one whose rows are wrapped
 printf 'ncols 3\nnrows 3\nNODATA_value -9999\n1 2 3\n4 5 6\n' >cut.asc
 fails "a grid with fewer rows than its heading states" 1 'want 3 x 3 heights, as ncols and nrows state, got 3 x 2' \

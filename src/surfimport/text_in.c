@@ -650,6 +650,10 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		dy = t.height / (double)t.rows;
 		settle_pixel(c, told, &dx, &dy);
 		unit = settle_unit(c, told, t.unit);
+		/* --pixel confirms it.  Rounded lengths have three digits. */
+		if (isnan(told->dx) && fabs(dx / dy - 1) > 0.01)
+			warn("%s: heights are %g m apart along x and %g m along y: are all rows there?",
+				c->name, dx, dy);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);
 		for (size_t i = 0; i < t.n; i++)
 			z[i] = t.value[i] == told->missing ? NAN : t.value[i] * unit;
