@@ -108,4 +108,19 @@ if command -v gnuplot >/dev/null; then
 else
 	skip 'gnuplot reads the output' 'no gnuplot'
 fi
+# Samples of the other byte order: sines, whose last bytes are random, and whole numbers, whose last bytes are 0.
+# turned ENCODING PACK SCALE: 400 samples
+turned() {
+	au 24 4294967295 "$1" 8000 1
+	perl -e 'print map { pack $ARGV[0], $ARGV[1] == 1 ? sin $_ : int $ARGV[1] * sin $_ } 1 .. 400' "$2" "$3"
+}
+for type in '6 f' '7 d'; do
+	for scale in 1 9; do
+		turned ${type% *} "${type#* }<" $scale >turned.au
+		fails "little-endian samples of encoding ${type% *} (times $scale)" 1 'turned.au: samples of impossible magnitudes' \
+			sigconvert --output raw turned.au
+		turned ${type% *} "${type#* }>" $scale >turned.au
+		ok "big-endian samples of encoding ${type% *} are read (times $scale)" sigconvert --output raw turned.au
+	done
+done
 done_testing

@@ -15,6 +15,7 @@
 #include "num/bytes.h"
 #include "num/crc32.h"
 #include <ctype.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,6 +47,7 @@ struct signal_in {
 	int promised;         /* the last frame is an end */
 	uint32_t checksum; /* checksum of the bytes returned, where an end is announced */
 	uint64_t frames;   /* handed out */
+	double huge, tiny; /* samples of magnitudes that no signal has */
 	int done;          /* no more frames to return */
 	unsigned char buffer[BUFFER];
 	size_t begin, end; /* unread bytes of buffer */
@@ -283,12 +285,30 @@ static void decode(
 	}
 }
 
+/* Floating-point numbers of the other byte order have random exponents, of which 30 % are
+ * above 1e15 in 32 bits and above 1e100 in 64, or if their last bytes are 0 the least
+ * ones.
+ */
+static void note_magnitudes(struct signal_in *in, const double *x, size_t n)
+{
+	const double most = in->encoding == FLOAT32 ? 1e15 : 1e100;
+
+	for (size_t i = 0; i < n; i++) {
+		double magnitude = fabs(x[i]);
+
+		in->huge += magnitude > most && magnitude <= DBL_MAX;
+		in->tiny += magnitude > 0 && magnitude < 1 / most / most;
+	}
+}
+
 /* Returns n frames of the buffer. */
 static void take(struct signal_in *in, double *x, size_t n)
 {
 	const unsigned char *b = in->buffer + in->begin;
 
 	decode(in, b, x, n * (size_t)in->format.channels);
+	if (!in->promised && in->encoding >= FLOAT32)
+		note_magnitudes(in, x, n * (size_t)in->format.channels);
 	if (in->promised)
 		in->checksum = crc32_add(in->checksum, b, n * in->frame);
 	in->begin += n * in->frame;
@@ -370,6 +390,18 @@ static void check_end(const struct signal_in *in)
 			in->name, in->frame, rest);
 }
 
+/* A signal of the suite has none of these. */
+static void check_order(const struct signal_in *in)
+{
+	double samples = (double)in->frames * in->format.channels;
+
+	if (in->huge > 0.01 * samples || in->tiny > 0.5 * samples)
+		ends_miss(
+			"%s: samples of impossible magnitudes: want them big-endian, as the "
+			"format AU has them",
+			in->name);
+}
+
 /* All declared bytes were returned, or less than a frame of them is left. */
 static void check_declared(struct signal_in *in)
 {
@@ -396,6 +428,7 @@ size_t signal_read_some(struct signal_in *in, double *x, size_t nframes)
 			return n;
 		}
 		in->done = 1;
+		check_order(in);
 		if (in->left < in->frame)
 			check_declared(in);
 		else if (fill_past(in))
