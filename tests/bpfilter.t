@@ -156,4 +156,13 @@ head -c 1001 three.au >cut.au
 fails "a stream cut inside a frame" 1 'cut.au' bpfilter cut.au
 fails "a full disk" 1 'o space' sh -c 'bpfilter three.au >/dev/full'
 
+# The first frame comes out N/2 frames later.
+sensorsim --uniform 50um:60um --number 1 --duration 50ms >short.au
+sigconvert --output channels short.au >channels.tsv
+short=$(column frames channels.tsv | head -n 1)
+fails "a record that is within the filter at its end" 3 "the delay of order $((2 * short)) is longer than the $short frames" \
+	sh -c "bpfilter --order $((2 * short)) --band 70:2000 short.au >out.au"
+ok "one more frame than the delay" bpfilter --order $((2 * short - 2)) --band 70:2000 short.au
+ok "a short record without delay" bpfilter --zero-phase --order $((2 * short)) --band 70:2000 short.au
+
 done_testing

@@ -94,7 +94,7 @@ cat plain.nrrd big.nrrd plain.gsf >three
 is 'records of three formats may follow each other' "$(records -o count three)" 3
 ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
 is 'an empty stream is not an error' "$(cat out)" 0
-for p in 'bemcontact -F 1N --estar 1GPa' 'debrisgen -Y 1GPa' 'records -o nrrd' 'roughgen -'; do
+for p in 'bemcontact -F 1N --estar 1GPa' 'debrisgen -Y 1GPa' 'records -o nrrd' 'records --pretty' 'roughgen -'; do
 	fails "${p%% *} needs a record" 1 "^${p%% *}: standard input: empty, want" $p
 	is 'an empty stream gives no output' "$(wc -c <out)" 0
 done

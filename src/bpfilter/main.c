@@ -288,12 +288,14 @@ static void put(struct chain *c, const double *x, size_t n)
 	}
 }
 
-static void run(const char *path)
+/* The exit status: 3 if all frames are still within the filter at the end. */
+static int run(const char *path)
 {
 	struct signal_in *in = signal_open(path, NULL);
 	struct chain c = make_chain(*signal_format(in), signal_name(in));
 	double *x = xcalloc(c.step * c.channels, sizeof *x), frames = 0, left_out;
 	size_t n, clean, tail = c.skip;
+	int within;
 
 	do {
 		const double *y = x;
@@ -312,6 +314,11 @@ static void run(const char *path)
 	if (frames > 0)
 		put(&c, NULL, tail);
 	signal_done(c.out);
+	within = !zero_phase && frames > 0 && frames <= (double)(order / 2);
+	if (within)
+		warn("%s: the delay of order %ld is longer than the %.0f frames: the output "
+		     "shows none of them, as it does with --zero-phase",
+			signal_name(in), order, frames);
 	stats_add("frames", frames);
 	stats_add("channels", (double)c.channels);
 	stats_add("points", (double)fir_transform(c.fir));
@@ -322,11 +329,12 @@ static void run(const char *path)
 	free(c.piece);
 	free(x);
 	signal_close(in);
+	return within ? EXIT_NOCONV : EXIT_SUCCESS;
 }
 
 int main(int argc, char **argv)
 {
-	int i = opt_parse(&prog, argc, argv);
+	int i = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
 
 	check_options(argc - i);
 	if (response || taps_only) {
@@ -337,7 +345,7 @@ int main(int argc, char **argv)
 		else
 			print_taps(h);
 	} else {
-		run(argv[i]);
+		status = run(argv[i]);
 	}
-	return shell_done(0);
+	return shell_done(status);
 }

@@ -71,11 +71,12 @@ void show_pretty(const char *path)
 	int more = table_next(t), n = table_columns(t);
 	int *width = xcalloc((size_t)n, sizeof *width);
 
+	if (n == 0)
+		die(EXIT_RUN, "%s: empty, want a table", table_name(t));
 	table_same_units(t);
 	for (int k = 0; k < n; k++)
 		width[k] = show_heading(t, k);
-	if (n > 0)
-		putchar('\n');
+	putchar('\n');
 	for (; more; more = table_next(t)) {
 		for (int k = 0; k < n; k++)
 			show_cell(t, k, width[k]);
