@@ -56,7 +56,7 @@ struct place {
 	struct progress now;
 };
 
-static const char magic[16] = "aopf state 15\n";
+static const char magic[16] = "aopf state 16\n";
 
 struct units *units_new(int bare)
 {

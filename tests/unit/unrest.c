@@ -27,12 +27,22 @@ static double jumping(struct draw *dice, int k, double *common)
 	return straight(dice, k, common) + (k > ROWS / 3 ? 0.3 : 0);
 }
 
-/* The rate swings between 0.1 and 1.9 of its mean, three times. */
+/* The rate swings between 0.1 and 1.9 of its mean, so many times. */
+static double swings(struct draw *dice, int k, double *common, int times)
+{
+	double phase = 2 * M_PI * times;
+
+	return straight(dice, k, common) - 0.9 * cos(phase * k / ROWS) / phase;
+}
+
+static double swinging_once(struct draw *dice, int k, double *common)
+{
+	return swings(dice, k, common, 1);
+}
+
 static double swinging(struct draw *dice, int k, double *common)
 {
-	double phase = 6 * M_PI * k / ROWS;
-
-	return straight(dice, k, common) - 0.9 * cos(phase) / (6 * M_PI);
+	return swings(dice, k, common, 3);
 }
 
 static double in_bursts(struct draw *dice, int k, double *common)
@@ -79,9 +89,11 @@ int main(void)
 		{ "straight wear", straight, 0, 0.005, 0, 0.002 },
 		{ "a rate that turns once", turning, 0, 0.05, 0, 0.004 },
 		{ "a jump", jumping, 0, 0.1, 0, 0.002 },
-		{ "a rate that swings", swinging, 0.5, 2, 0, 0.006 },
+		{ "a rate that swings once", swinging_once, 0.2, 0.3, 0, 0.006 },
+		{ "a rate that swings, and is back within the longest distance", swinging,
+			0, 0.005, 0.1, 0.03 },
 		{ "noise common to 20 rows", in_bursts, 0, INFINITY, 0.1, 0.04 },
-		{ "a random walk", wandering, 0, INFINITY, 0, 0.02 },
+		{ "a random walk", wandering, 0, INFINITY, 0, 0.05 },
 	};
 	struct draw *dice = draw_new(7, 0, 0);
 	struct plateau few = { 0 };

@@ -3,7 +3,7 @@
 #include "num/robust.h"
 #include <math.h>
 
-enum { LEAST = 12 }; /* see "Unrest" in doc/trends.md */
+enum { LEAST = 8 }; /* see "Unrest" in doc/trends.md */
 
 /* A Wiener process or a jump takes the means off the line between those at a distance by
  * a square that grows with it, curved wear by one that grows faster, and noise by one

@@ -20,7 +20,8 @@ struct unrest {
 	double swing[UNREST_STEPS]; /* squares of the usual change of the rate from one
 				     * such distance to the next, over the rate */
 	double way[UNREST_STEPS];   /* usual damage over twice the distance */
-	double common; /* variance of a noise that lasts longer than a mean */
+	double common; /* variance of a noise that lasts longer than a mean, or of
+			* swings that are back within the longest distance */
 };
 
 struct unrest unrest_of(const struct plateau *p, double range);
