@@ -159,7 +159,7 @@ static double degrees(const struct joint *j)
 	double visible =
 		(double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
 
-	return (1 - j->scene.lost) * visible - j->taken;
+	return (1 - j->scene.lost) * visible - j->basis->taken;
 }
 
 /* The search for pulses: candidates that were not worth it since the last one that was,

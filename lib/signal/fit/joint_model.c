@@ -1,5 +1,6 @@
 /* joint_model.c - contributions of pulses, tones and offset to the record; see
  * joint_state.h */
+#include "num/lesser.h"
 #include "num/sigmas.h"
 #include "signal/fit/joint_state.h"
 #include <limits.h>
@@ -30,7 +31,7 @@ static void free_samples(struct joint *j)
 		free(j->e[c]);
 		free(j->r[c]);
 		free(j->filter[c]);
-		j->e[c] = j->r[c] = j->filter[c] = j->q[c] = NULL;
+		j->e[c] = j->r[c] = j->filter[c] = NULL;
 	}
 	free(j->basis_memory);
 	j->basis_memory = NULL;
@@ -136,12 +137,14 @@ static enum num_status orthonormalise(double *q, int first, int b, size_t n)
 static void draw_wave(struct joint *j, int c, int b, double (*wave)(double), double w,
 	double knot, double hop)
 {
-	double *v = j->q[c] + (size_t)b * j->n, n = (double)j->n;
+	double *v = j->basis->q[c] + (size_t)b * j->n, n = (double)j->n;
+	size_t from = hop > 0 ? (size_t)clamp(ceil(knot - hop), 0, n) : 0;
+	size_t to = hop > 0 ? (size_t)clamp(ceil(knot + hop), 0, n) : j->n;
 
-	j->from[c][b] = hop > 0 ? (size_t)clamp(ceil(knot - hop), 0, n) : 0;
-	j->to[c][b] = hop > 0 ? (size_t)clamp(ceil(knot + hop), 0, n) : j->n;
+	j->basis->from[c][b] = from;
+	j->basis->to[c][b] = to;
 	memset(v, 0, j->n * sizeof *v);
-	for (size_t i = j->from[c][b]; i < j->to[c][b]; i++) {
+	for (size_t i = from; i < to; i++) {
 		double hat = hop > 0 ? 1 - fabs((double)i - knot) / hop : 1;
 
 		v[i] = hat * wave(w * ((double)i - n / 2));
@@ -155,31 +158,28 @@ static void draw_wave(struct joint *j, int c, int b, double (*wave)(double), dou
  */
 static double take_term(struct joint *j, int c, int b, double variance)
 {
-	double *v = j->q[c] + (size_t)b * j->n, part[BASIS_MAX], norm, left, scale;
-	size_t from = j->from[c][b], n = j->to[c][b] - from;
+	double *v = j->basis->q[c] + (size_t)b * j->n, part[BASIS_MAX], norm, left, scale;
+	size_t *from = j->basis->from[c], *to = j->basis->to[c], n = to[b] - from[b];
 
-	norm = left = dot(v + from, v + from, n);
-	for (int k = 0; k < b; k++) {
-		part[k] = joint_along_basis(j, c, k, (long)from, v + from, n);
+	norm = left = dot(v + from[b], v + from[b], n);
+	joint_along(j, c, b, (long)from[b], v + from[b], n, part);
+	for (int k = 0; k < b; k++)
 		left -= part[k] * part[k];
-	}
 	if (left <= 1e-8 * norm || left == 0) {
 		memset(v, 0, j->n * sizeof *v);
 		return 0;
 	}
 	for (int k = 0; k < b; k++) {
-		const double *q = j->q[c] + (size_t)k * j->n;
+		const double *q = j->basis->q[c] + (size_t)k * j->n;
 
 		if (part[k] == 0)
 			continue;
-		add_scaled(v + j->from[c][k], -part[k], q + j->from[c][k],
-			j->to[c][k] - j->from[c][k]);
-		j->from[c][b] =
-			j->from[c][k] < j->from[c][b] ? j->from[c][k] : j->from[c][b];
-		j->to[c][b] = j->to[c][k] > j->to[c][b] ? j->to[c][k] : j->to[c][b];
+		add_scaled(v + from[k], -part[k], q + from[k], to[k] - from[k]);
+		from[b] = lesser(from[k], from[b]);
+		to[b] = to[k] > to[b] ? to[k] : to[b];
 	}
 	scale = 1 / sqrt(1 / variance + left);
-	for (size_t i = j->from[c][b]; i < j->to[c][b]; i++)
+	for (size_t i = from[b]; i < to[b]; i++)
 		v[i] *= scale;
 	return left * scale * scale;
 }
@@ -190,6 +190,7 @@ static double take_term(struct joint *j, int c, int b, double variance)
 static void add_known_tones(struct joint *j, int c, int most)
 {
 	const struct joint_scene *s = &j->scene;
+	struct basis *b = j->basis;
 	double n = (double)j->n, hop = s->tone_hop, first;
 
 	while (hop > 0 && (2 + ceil(n / hop)) * 2 * s->tones > most)
@@ -197,9 +198,9 @@ static void add_known_tones(struct joint *j, int c, int most)
 	first = hop > 0 ? s->tone_knot[c] - hop * ceil(s->tone_knot[c] / hop) : 0;
 	for (double knot = first; knot < first + n + 2 * hop; knot += hop) {
 		for (int k = 0; k < 2 * s->tones; k++) {
-			draw_wave(j, c, j->basis, k % 2 ? sin : cos, s->omega[k / 2],
+			draw_wave(j, c, b->vectors, k % 2 ? sin : cos, s->omega[k / 2],
 				knot, hop);
-			j->taken += take_term(j, c, j->basis++, s->tone_variance);
+			b->taken += take_term(j, c, b->vectors++, s->tone_variance);
 		}
 		if (hop == 0)
 			break;
@@ -213,83 +214,44 @@ static void make_channel_basis(struct joint *j, int c)
 	const struct joint_scene *s = &j->scene;
 	int slow = (int)fmin(ceil(2 * (double)j->n * s->low), JOINT_BASELINE_MAX);
 	int free_tones = isinf(s->tone_variance) ? s->tones : 0, known;
+	struct basis *basis = j->basis;
 
-	j->basis = 0;
+	basis->vectors = 0;
 	if (!free_tones && s->tones > 0)
 		add_known_tones(j, c, BASIS_MAX - 2 * slow - 1);
-	known = j->basis;
-	for (int k = 1; k <= slow; k++) {
-		double omega = M_PI * k / (double)j->n;
-
-		draw_wave(j, c, j->basis++, cos, omega, 0, 0);
-		draw_wave(j, c, j->basis++, sin, omega, 0, 0);
-	}
-	draw_wave(j, c, j->basis++, cos, 0, 0, 0);
+	known = basis->vectors;
+	for (int k = 2; k < 2 * slow + 2; k++)
+		draw_wave(j, c, basis->vectors++, k % 2 ? sin : cos,
+			M_PI * (k / 2) / (double)j->n, 0, 0);
+	draw_wave(j, c, basis->vectors++, cos, 0, 0, 0);
 	for (int k = 0; k < 2 * free_tones; k++)
-		draw_wave(j, c, j->basis++, k % 2 ? sin : cos, s->omega[k / 2], 0, 0);
-	for (int b = known; b < j->basis; b++)
-		if (orthonormalise(j->q[c], known, b, j->n) != NUM_OK)
-			memset(j->q[c] + (size_t)b * j->n, 0, j->n * sizeof(double));
-	for (int b = known; b < j->basis; b++) {
+		draw_wave(
+			j, c, basis->vectors++, k % 2 ? sin : cos, s->omega[k / 2], 0, 0);
+	for (int b = known; b < basis->vectors; b++)
+		if (orthonormalise(basis->q[c], known, b, j->n) != NUM_OK)
+			memset(basis->q[c] + (size_t)b * j->n, 0, j->n * sizeof(double));
+	for (int b = known; b < basis->vectors; b++) {
 		double share = known ? take_term(j, c, b, INFINITY) : 1;
 
-		j->taken += b < known + 2 * slow ? 0 : share;
+		basis->taken += b < known + 2 * slow ? 0 : share;
 	}
 }
 
-/* 1 if the basis is that of the present scene over n samples. */
-static int is_basis(const struct joint *j, const struct basis *b, int differ)
-{
-	const struct joint_scene *s = &j->scene;
-
-	return b->n == j->n && b->differ == differ && b->tones == s->tones &&
-	       b->variance == s->tone_variance && b->hop == s->tone_hop &&
-	       b->knot[0] == s->tone_knot[0] && b->knot[1] == s->tone_knot[1] &&
-	       b->low == s->low &&
-	       !memcmp(b->omega, s->omega, (size_t)s->tones * sizeof *s->omega);
-}
-
-static void keep_basis(struct joint *j, int differ)
-{
-	const struct joint_scene *s = &j->scene;
-	struct basis *b = &j->bases[j->nbases++];
-
-	*b = (struct basis){ .n = j->n,
-		.tones = s->tones,
-		.vectors = j->basis,
-		.differ = differ,
-		.variance = s->tone_variance,
-		.hop = s->tone_hop,
-		.knot = { s->tone_knot[0], s->tone_knot[1] },
-		.low = s->low,
-		.taken = j->taken,
-		.q = { j->q[0], j->q[1] } };
-	memcpy(b->omega, s->omega, sizeof b->omega);
-	memcpy(b->from, j->from, sizeof b->from);
-	memcpy(b->to, j->to, sizeof b->to);
-	j->basis_used += (size_t)(differ ? 2 : 1) * (size_t)j->basis * j->n;
-}
-
-static void use_basis(struct joint *j, const struct basis *b)
-{
-	j->basis = b->vectors;
-	j->taken = b->taken;
-	memcpy(j->from, b->from, sizeof j->from);
-	memcpy(j->to, b->to, sizeof j->to);
-	memcpy(j->q, b->q, sizeof j->q);
-}
-
-/* Basis of offset, baseline and tones over n samples.  To learn, the same samples are
- * fitted again and again. */
+/* Basis of offset, baseline and tones over n samples. */
 static void make_basis(struct joint *j)
 {
 	const struct joint_scene *s = &j->scene;
 	const int hidden = s->hidden[0] || s->hidden[1];
 	const int differ = hidden || (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
+	double of[BASIS_OF] = { (double)j->n, differ, s->tones, s->tone_variance,
+		s->tone_hop, s->tone_knot[0], s->tone_knot[1], s->low };
+	struct basis *b = j->bases;
 
+	memcpy(of + BASIS_OF - JOINT_TONES_MAX, s->omega,
+		(size_t)s->tones * sizeof *s->omega);
 	for (int i = 0; i < j->nbases && !hidden; i++)
-		if (is_basis(j, &j->bases[i], differ)) {
-			use_basis(j, &j->bases[i]);
+		if (!memcmp(j->bases[i].of, of, sizeof of)) {
+			j->basis = &j->bases[i];
 			return;
 		}
 	if (j->nbases == BASES ||
@@ -297,46 +259,49 @@ static void make_basis(struct joint *j)
 		j->nbases = 0;
 	if (j->nbases == 0)
 		j->basis_used = 0;
-	j->taken = 0;
-	j->q[0] = j->basis_memory + j->basis_used;
+	b = j->basis = &j->bases[j->nbases];
+	memcpy(b->of, of, sizeof of);
+	b->taken = 0;
+	b->q[0] = b->q[1] = j->basis_memory + j->basis_used;
 	make_channel_basis(j, 0);
-	j->q[1] = j->q[0];
 	if (differ) {
-		j->q[1] += (size_t)j->basis * j->n;
+		b->q[1] += (size_t)b->vectors * j->n;
 		make_channel_basis(j, 1);
 	} else {
-		j->taken *= 2;
-		memcpy(j->from[1], j->from[0], sizeof j->from[0]);
-		memcpy(j->to[1], j->to[0], sizeof j->to[0]);
+		b->taken *= 2;
+		memcpy(b->from[1], b->from[0], sizeof b->from[0]);
+		memcpy(b->to[1], b->to[0], sizeof b->to[0]);
 	}
-	if (!hidden)
-		keep_basis(j, differ);
+	if (hidden)
+		return;
+	j->basis_used += (size_t)(differ ? 2 : 1) * (size_t)b->vectors * j->n;
+	j->nbases++;
 }
 
 /* Vectors that are not 0 in the same samples, as those of waves over the whole record and
  * of one knot, are taken three at a time. */
-void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
-	double *along)
+void joint_along(const struct joint *j, int c, int vectors, long first, const double *x,
+	size_t n, double *along)
 {
-	const size_t *from = j->from[c], *to = j->to[c];
-	int b = 0;
+	const size_t *from = j->basis->from[c], *to = j->basis->to[c];
 
-	while (b < j->basis) {
-		const double *q = j->q[c] + (size_t)b * j->n;
+	for (int b = 0; b < vectors;) {
+		const double *q = j->basis->q[c] + (size_t)b * j->n;
 		long begin = first > (long)from[b] ? first : (long)from[b];
 		long end = first + (long)n < (long)to[b] ? first + (long)n : (long)to[b];
+		size_t some = end > begin ? (size_t)(end - begin) : 0;
 
-		if (b + 3 > j->basis || from[b] != from[b + 1] ||
-			from[b] != from[b + 2] || to[b] != to[b + 1] ||
-			to[b] != to[b + 2] || end <= begin) {
-			along[b] = joint_along_basis(j, c, b, first, x, n);
-			b++;
-			continue;
+		if (some > 0 && b + 3 <= vectors && from[b] == from[b + 1] &&
+			from[b] == from[b + 2] && to[b] == to[b + 1] &&
+			to[b] == to[b + 2]) {
+			q += begin;
+			dot3(x + (begin - first),
+				(const double *[]){ q, q + j->n, q + 2 * j->n }, some,
+				along + b);
+			b += 3;
+		} else {
+			along[b++] = some ? dot(x + (begin - first), q + begin, some) : 0;
 		}
-		q += begin;
-		dot3(x + (begin - first), (const double *[]){ q, q + j->n, q + 2 * j->n },
-			(size_t)(end - begin), along + b);
-		b += 3;
 	}
 }
 
@@ -345,7 +310,7 @@ void joint_measure(struct joint *j)
 	j->energy = 0;
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
-		joint_along_all(j, c, 0, j->e[c], j->n, j->qe[c]);
+		joint_along(j, c, j->basis->vectors, 0, j->e[c], j->n, j->qe[c]);
 	}
 }
 
@@ -354,7 +319,7 @@ double joint_chi_square(const struct joint *j)
 	double chi2 = j->energy;
 
 	for (int c = 0; c < 2; c++)
-		for (int b = 0; b < j->basis; b++)
+		for (int b = 0; b < j->basis->vectors; b++)
 			chi2 -= j->qe[c][b] * j->qe[c][b];
 	return chi2;
 }
@@ -363,11 +328,13 @@ void joint_project(struct joint *j)
 {
 	joint_measure(j);
 	for (int c = 0; c < 2; c++) {
+		const size_t *from = j->basis->from[c], *to = j->basis->to[c];
+
 		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
-		for (int b = 0; b < j->basis; b++)
-			add_scaled(j->r[c] + j->from[c][b], -j->qe[c][b],
-				j->q[c] + (size_t)b * j->n + j->from[c][b],
-				j->to[c][b] - j->from[c][b]);
+		for (int b = 0; b < j->basis->vectors; b++)
+			add_scaled(j->r[c] + from[b], -j->qe[c][b],
+				j->basis->q[c] + (size_t)b * j->n + from[b],
+				to[b] - from[b]);
 	}
 }
 

@@ -40,16 +40,10 @@ static size_t list_unknowns(const struct joint *j, unsigned set, struct unknown 
 	return n;
 }
 
-/* Inner product within channel c of column u of pulse i and column v of pulse k, less
- * what tones and baseline take of them. */
+/* Inner product within channel c of column u of pulse i and column v of pulse k. */
 static double inner(const struct joint *j, int c, int i, int u, int k, int v)
 {
-	const struct column *x = &j->col[i][c], *y = &j->col[k][c];
-	const double *of = j->bq + c * j->basis;
-	const int nb = 2 * j->basis;
-
-	return dot_within(x->d[u], x->n, y->d[v], y->n, x->first - y->first) -
-	       dot(of + (PAR * i + u) * nb, of + (PAR * k + v) * nb, (size_t)j->basis);
+	return joint_inner(j, joint_column(j, i, i, u, c), joint_column(j, k, k, v, c));
 }
 
 /* Inner product of the derivatives by two unknowns. */

@@ -49,52 +49,37 @@ void joint_pair_start(struct joint *j, int i, const int *set, int m)
 {
 	struct pair_table *t = &j->pair;
 	double seen[PAIR_KNOTS][NPAR], along_basis[PAIR_KNOTS][BASIS_MAX];
-	long first[PAIR_KNOTS];
-	size_t n[PAIR_KNOTS];
-	int nb = 2 * j->basis;
+	struct piece more[PAIR_KNOTS];
 
 	_Static_assert(PAIR_KNOTS % 3 == 0, "three knots are reduced together");
 	memset(t, 0, sizeof *t);
 	for (int a = 0; a < PAIR_KNOTS; a++) {
 		int c = a / PAIR_GAPS, k = a % PAIR_GAPS;
 		double *x = j->excess + (size_t)a * j->support;
+		struct piece *p = &more[a];
 
-		first[a] = 0;
-		n[a] = 0;
+		*p = (struct piece){ .x = x, .along = along_basis[a] };
 		if (k > 0)
-			first[a] = make_excess(
-				j, i, c, knot(k) * j->scene.duration, x, &n[a]);
-		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
-		for (int b = 0; b < j->basis; b++)
-			along_basis[a][b] = joint_along_basis(j, c, b, first[a], x, n[a]);
-		for (int u = 0; u < PAR * m; u++) {
-			const struct column *col = &j->col[set[u / PAR]][c];
-
-			seen[a][u] = dot_within(col->d[u % PAR], col->n, x, n[a],
-					     col->first - first[a]) -
-				     dot(along_basis[a], j->bq + u * nb + c * j->basis,
-					     (size_t)j->basis);
-		}
+			p->first = make_excess(
+				j, i, c, knot(k) * j->scene.duration, x, &p->n);
+		t->along[a] = dot(x, j->r[c] + p->first, p->n);
+		joint_along(j, c, j->basis->vectors, p->first, x, p->n, along_basis[a]);
+		for (int u = 0; u < PAR * m; u++)
+			seen[a][u] = joint_inner(j,
+				joint_column(j, set[u / PAR], u / PAR, u % PAR, c), *p);
 		if (a % 3 == 2)
 			joint_reduce(j, PAR * m, 0,
 				(double *[]){ seen[a - 2], seen[a - 1], seen[a] });
 	}
-	for (int a = 0; a < PAIR_KNOTS; a++) {
-		const double *x = j->excess + (size_t)a * j->support;
-
+	for (int a = 0; a < PAIR_KNOTS; a++)
 		for (int b = 0; b <= a; b++) {
-			double shared = 0;
+			double shared = b / PAIR_GAPS == a / PAIR_GAPS
+						? joint_inner(j, more[a], more[b])
+						: 0;
 
-			if (b / PAIR_GAPS == a / PAIR_GAPS)
-				shared = dot_within(x, n[a],
-						 j->excess + (size_t)b * j->support, n[b],
-						 first[a] - first[b]) -
-					 dot(along_basis[a], along_basis[b],
-						 (size_t)j->basis);
 			shared -= dot(seen[a], seen[b], (size_t)(PAR * m));
 			t->gram[a][b] = t->gram[b][a] = shared;
 		}
-	}
 }
 
 /* The gap, in durations, between two knots of the table: the first one, and the share of

@@ -30,7 +30,7 @@ static void draw_slopes(struct joint *j, int c, double *const by[JOINT_SLOPES])
 
 int joint_add_slopes(struct joint *j, struct joint_slopes *sum)
 {
-	const int np = PAR * j->m, nb = 2 * j->basis;
+	const int np = PAR * j->m;
 	double with[JOINT_SLOPES][NPAR] = { { 0 } }, moved[NPAR];
 
 	if (joint_factorise(j, j->all, j->m) != NUM_OK)
@@ -38,24 +38,20 @@ int joint_add_slopes(struct joint *j, struct joint_slopes *sum)
 	for (int c = 0; c < 2; c++) {
 		double *by[JOINT_SLOPES] = { j->filter[0], j->filter[1] };
 		double along[JOINT_SLOPES][BASIS_MAX];
+		struct piece slope[JOINT_SLOPES], e = { 0, j->n, j->e[c], j->qe[c] };
 
 		draw_slopes(j, c, by);
 		for (int k = 0; k < JOINT_SLOPES; k++) {
-			joint_along_all(j, c, 0, by[k], j->n, along[k]);
-			sum->gradient[k] += dot(by[k], j->e[c], j->n) -
-					    dot(along[k], j->qe[c], (size_t)j->basis);
+			joint_along(j, c, j->basis->vectors, 0, by[k], j->n, along[k]);
+			slope[k] = (struct piece){ 0, j->n, by[k], along[k] };
+			sum->gradient[k] += joint_inner(j, slope[k], e);
 			for (int l = 0; l <= k; l++)
 				sum->curvature[k][l] +=
-					dot(by[k], by[l], j->n) -
-					dot(along[k], along[l], (size_t)j->basis);
-			for (int x = 0; x < np; x++) {
-				const struct column *col = &j->col[x / PAR][c];
-
-				with[k][x] +=
-					dot(col->d[x % PAR], by[k] + col->first, col->n) -
-					dot(j->bq + x * nb + c * j->basis, along[k],
-						(size_t)j->basis);
-			}
+					joint_inner(j, slope[k], slope[l]);
+			for (int x = 0; x < np; x++)
+				with[k][x] += joint_inner(j,
+					joint_column(j, x / PAR, x / PAR, x % PAR, c),
+					slope[k]);
 		}
 	}
 	for (int k = 0; k < JOINT_SLOPES; k++) {

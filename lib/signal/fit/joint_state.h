@@ -32,14 +32,23 @@ struct pair_table {
 	double along[PAIR_KNOTS], gram[PAIR_KNOTS][PAIR_KNOTS];
 };
 
-/* Bases of the last fits, which are made again for the next fit to the same samples. */
-enum { BASES = 32 };
+/* Vectors q of tones, baseline and offset: the inverse of the covariance of a channel is
+ * 1 - sum q q^T.  Those of the last fits are kept: to learn, the same samples are fitted
+ * again and again. */
+enum { BASES = 32, BASIS_OF = 8 + JOINT_TONES_MAX };
 struct basis {
+	double of[BASIS_OF]; /* what it follows from */
+	int vectors;
+	double taken; /* degrees of freedom that they take, without the baseline's */
+	double *q[2]; /* of either channel: vectors * n; the same unless they differ */
+	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
+};
+
+/* Samples of a channel from sample first on, and their inner products with its basis. */
+struct piece {
+	long first;
 	size_t n;
-	int tones, vectors, differ;
-	double omega[JOINT_TONES_MAX], variance, hop, knot[2], low, taken;
-	size_t from[2][BASIS_MAX], to[2][BASIS_MAX];
-	double *q[2];
+	const double *x, *along;
 };
 
 struct joint {
@@ -54,19 +63,13 @@ struct joint {
 	size_t n;
 	double *e[2]; /* record minus pulses, with tones */
 	double *r[2]; /* e without tones and offset */
-	/* Vectors q of tones, baseline and offset: the inverse of the covariance of a
-	 * channel is 1 - sum q q^T. */
-	int basis;
-	double taken; /* degrees of freedom that they take, without the baseline's */
-	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
-	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
-	double *basis_memory;                        /* BASIS_ROOM of capacity */
-	size_t basis_used;                           /* of it, by bases[0 .. nbases) */
-	struct basis bases[BASES];
+	struct basis *basis, bases[BASES];
 	int nbases;
-	double *memory;  /* columns of all pulses */
-	double *scratch; /* three of support */
-	double *excess;  /* PAIR_KNOTS of support */
+	double *basis_memory; /* BASIS_ROOM of capacity */
+	size_t basis_used;    /* of it, by bases[0 .. nbases) */
+	double *memory;       /* columns of all pulses */
+	double *scratch;      /* three of support */
+	double *excess;       /* PAIR_KNOTS of support */
 	struct pair_table pair;
 	double *filter[2]; /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
@@ -77,7 +80,7 @@ struct joint {
 	double *factor;
 	double energy;           /* e^T e of both channels, ... */
 	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
-	double *bq;              /* NPAR * basis: Q^T J */
+	double *bq;              /* Q^T J, see joint_column() */
 	double gradient[NPAR], move[NPAR];
 	double work; /* samples of columns computed, since it is new */
 	double own[JOINT_OWN]
@@ -106,18 +109,26 @@ static inline double arrival_limit(const struct joint *j, int side)
 	return side ? n - inside : inside;
 }
 
-/* Inner product of vector b of a channel's basis with x[0 .. n), whose first sample is
- * sample first. */
-static inline double joint_along_basis(
-	const struct joint *j, int c, int b, long first, const double *x, size_t n)
+/* Inner products of row x of J within channel c with the basis. */
+static inline double *joint_row(const struct joint *j, int x, int c)
 {
-	long from = first > (long)j->from[c][b] ? first : (long)j->from[c][b];
-	long end =
-		first + (long)n < (long)j->to[c][b] ? first + (long)n : (long)j->to[c][b];
+	return j->bq + (2 * x + c) * j->basis->vectors;
+}
 
-	return end > from ? dot(x + (from - first), j->q[c] + (size_t)b * j->n + from,
-				    (size_t)(end - from))
-			  : 0;
+/* Column u of pulse i within channel c, the pth of those that J was made of. */
+static inline struct piece joint_column(const struct joint *j, int i, int p, int u, int c)
+{
+	const struct column *col = &j->col[i][c];
+
+	return (struct piece){ col->first, col->n, col->d[u],
+		joint_row(j, PAR * p + u, c) };
+}
+
+/* Inner product of two pieces of one channel, less what the basis takes of it. */
+static inline double joint_inner(const struct joint *j, struct piece x, struct piece y)
+{
+	return dot_within(x.x, x.n, y.x, y.n, x.first - y.first) -
+	       dot(x.along, y.along, (size_t)j->basis->vectors);
 }
 
 /* joint_model.c: the record minus pulses, and its parts */
@@ -128,10 +139,10 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	int m);
 /* Room for columns of pulses in the range of delays of this scene. */
 enum joint_status joint_reserve_columns(struct joint *j, const struct joint_scene *s);
-/* The inner products of all vectors of a channel's basis with x[0 .. n), whose first
- * sample is sample first, as joint_along_basis() has them. */
-void joint_along_all(const struct joint *j, int c, long first, const double *x, size_t n,
-	double *along);
+/* The inner products of the first vectors of a channel's basis with x[0 .. n), whose
+ * first sample is sample first. */
+void joint_along(const struct joint *j, int c, int vectors, long first, const double *x,
+	size_t n, double *along);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);

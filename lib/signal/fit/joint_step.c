@@ -27,26 +27,10 @@ static void add_block(const struct joint *j, int i, int k, double block[PAR][PAR
 	}
 }
 
-/* Inner products of vector b of a channel's basis with the three columns of a pulse. */
-static void along_basis(
-	const struct joint *j, int c, int b, const struct column *col, double part[PAR])
-{
-	long from = col->first > (long)j->from[c][b] ? col->first : (long)j->from[c][b];
-	long end = col->first + (long)col->n, skip = from - col->first;
-
-	end = end < (long)j->to[c][b] ? end : (long)j->to[c][b];
-	memset(part, 0, PAR * sizeof *part);
-	if (end > from)
-		dot3(j->q[c] + (size_t)b * j->n + from,
-			(const double *[]){
-				col->d[0] + skip, col->d[1] + skip, col->d[2] + skip },
-			(size_t)(end - from), part);
-}
-
 /* Normal matrix and gradient of the m pulses in set. */
 static void make_normal(struct joint *j, const int *set, int m)
 {
-	int np = PAR * m, nb = 2 * j->basis;
+	const int np = PAR * m, vectors = j->basis->vectors;
 
 	for (int x = 0; x < m; x++) {
 		int i = set[x];
@@ -60,13 +44,12 @@ static void make_normal(struct joint *j, const int *set, int m)
 			dot3(j->e[c] + col->first, d, col->n, part);
 			for (int u = 0; u < PAR; u++)
 				g[u] += part[u];
-			for (int b = 0; b < j->basis; b++) {
-				along_basis(j, c, b, col, part);
-				for (int u = 0; u < PAR; u++) {
-					g[u] -= part[u] * j->qe[c][b];
-					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
-						part[u];
-				}
+			for (int u = 0; u < PAR; u++) {
+				double *row = joint_row(j, PAR * x + u, c);
+
+				joint_along(j, c, vectors, col->first, d[u], col->n, row);
+				for (int b = 0; b < vectors; b++)
+					g[u] -= row[b] * j->qe[c][b];
 			}
 		}
 		for (int y = 0; y <= x; y++) {
@@ -79,9 +62,9 @@ static void make_normal(struct joint *j, const int *set, int m)
 				for (int v = 0; v < (x == y ? u + 1 : PAR); v++)
 					j->h[row * np + PAR * y + v] =
 						block[u][v] -
-						dot(j->bq + row * nb,
-							j->bq + (PAR * y + v) * nb,
-							(size_t)nb);
+						dot(joint_row(j, row, 0),
+							joint_row(j, PAR * y + v, 0),
+							2 * (size_t)vectors);
 			}
 		}
 	}
@@ -189,8 +172,8 @@ static void count_span(struct joint *j, int c, long from, long to, double sign)
 	double part[BASIS_MAX];
 
 	j->energy += sign * dot(e, e, n);
-	joint_along_all(j, c, from, e, n, part);
-	for (int b = 0; b < j->basis; b++)
+	joint_along(j, c, j->basis->vectors, from, e, n, part);
+	for (int b = 0; b < j->basis->vectors; b++)
 		j->qe[c][b] += sign * part[b];
 }
 

@@ -64,10 +64,13 @@ static void make_metric(struct fit *f)
 	}
 }
 
-/* Of column k of pulse i on sensor c: its products with the basis. */
-static double *along(const struct joint *j, int i, int k, int c)
+/* What is left of a component, 0 or 1, of sensor c. */
+static struct piece rest_of(const struct fit *f, int c, int component)
 {
-	return j->bq + ((PAR * i + k) * 2 + c) * j->basis;
+	const struct joint *j = f->joint;
+
+	return (struct piece){ 0, j->n, component ? j->r[c] : j->e[c],
+		f->left[c][component] };
 }
 
 static void make_columns(struct joint *j, int i, const struct quadrature_pulse *p)
@@ -76,10 +79,9 @@ static void make_columns(struct joint *j, int i, const struct quadrature_pulse *
 	joint_make_columns(j, i);
 	for (int c = 0; c < 2; c++)
 		for (int k = 0; k < PAR; k++)
-			for (int b = 0; b < j->basis; b++)
-				along(j, i, k, c)[b] = dot(j->col[i][c].d[k],
-					j->q[c] + (size_t)b * j->n + j->col[i][c].first,
-					j->col[i][c].n);
+			joint_along(j, c, j->basis->vectors, j->col[i][c].first,
+				j->col[i][c].d[k], j->col[i][c].n,
+				joint_row(j, PAR * i + k, c));
 }
 
 /* Makes the columns of these pulses and subtracts them from the record; returns
@@ -105,18 +107,14 @@ static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 		}
 		for (int k = 0; k < 2; k++) {
 			joint_hide(j, c, 0, j->n, rest[k]);
-			for (int b = 0; b < j->basis; b++)
-				f->left[c][k][b] =
-					dot(rest[k], j->q[c] + (size_t)b * j->n, j->n);
+			joint_along(
+				j, c, j->basis->vectors, 0, rest[k], j->n, f->left[c][k]);
 		}
 		for (int k = 0; k < 2; k++)
-			for (int l = 0; l < 2; l++) {
-				double product = dot(rest[k], rest[l], j->n);
-
-				for (int b = 0; b < j->basis; b++)
-					product -= f->left[c][k][b] * f->left[c][l][b];
-				chi2 += f->metric[c][k + l] * product;
-			}
+			for (int l = 0; l < 2; l++)
+				chi2 += f->metric[c][k + l] * joint_inner(j,
+								      rest_of(f, c, k),
+								      rest_of(f, c, l));
 	}
 	return chi2;
 }
@@ -128,17 +126,6 @@ static int component_of(const struct quadrature_pulse *p, int k, double weight[2
 	weight[0] = k == A ? 1 : k == B ? 0 : p->a;
 	weight[1] = k == A ? 0 : k == B ? 1 : p->b;
 	return k < A ? k : A;
-}
-
-/* Product of column k of pulse i and l of pulse o, without what lies in the basis. */
-static double product(const struct joint *j, int c, int i, int k, int o, int l)
-{
-	const struct column *x = &j->col[i][c], *y = &j->col[o][c];
-	double sum = dot_within(x->d[k], x->n, y->d[l], y->n, x->first - y->first);
-
-	for (int b = 0; b < j->basis; b++)
-		sum -= along(j, i, k, c)[b] * along(j, o, l, c)[b];
-	return sum;
 }
 
 static double form(const double metric[3], const double u[2], const double w[2])
@@ -156,17 +143,11 @@ static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i
 		int column = component_of(&p[i], k, weight);
 
 		for (int c = 0; c < 2; c++) {
-			const struct column *col = &j->col[i][c];
-			const double *rest[2] = { j->e[c], j->r[c] };
 			double part[2];
 
-			for (int l = 0; l < 2; l++) {
-				part[l] =
-					dot(col->d[column], rest[l] + col->first, col->n);
-				for (int b = 0; b < j->basis; b++)
-					part[l] -= along(j, i, column, c)[b] *
-						   f->left[c][l][b];
-			}
+			for (int l = 0; l < 2; l++)
+				part[l] = joint_inner(j, joint_column(j, i, i, column, c),
+					rest_of(f, c, l));
 			sum += form(f->metric[c], weight, part);
 		}
 		f->gradient[PARAMETERS * i + k] = sum;
@@ -175,13 +156,15 @@ static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i
 
 static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, int o)
 {
-	int all = PARAMETERS * f->joint->m;
+	const struct joint *j = f->joint;
+	int all = PARAMETERS * j->m;
 	double of[2][PAR][PAR];
 
 	for (int c = 0; c < 2; c++)
 		for (int k = 0; k < PAR; k++)
 			for (int l = 0; l < PAR; l++)
-				of[c][k][l] = product(f->joint, c, i, k, o, l);
+				of[c][k][l] = joint_inner(j, joint_column(j, i, i, k, c),
+					joint_column(j, o, o, l, c));
 	for (int k = 0; k < PARAMETERS; k++)
 		for (int l = 0; l < PARAMETERS; l++) {
 			double u[2], w[2], sum = 0;
@@ -277,13 +260,11 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
 	const struct joint *j = f->joint;
-	double of_x = 0, dof = -j->taken - j->m, v;
+	double of_x = 0, dof = -j->basis->taken - j->m, v;
 
 	for (int c = 0; c < 2; c++) {
 		dof += (double)joint_visible(j, c, 0, j->n) * (1 - j->scene.lost);
-		of_x += dot(j->e[c], j->e[c], j->n);
-		for (int b = 0; b < j->basis; b++)
-			of_x -= f->left[c][0][b] * f->left[c][0][b];
+		of_x += joint_inner(j, rest_of(f, c, 0), rest_of(f, c, 0));
 	}
 	dof = fmax(dof, 1);
 	v = (all - of_x) / dof;
