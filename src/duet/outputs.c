@@ -192,7 +192,8 @@ static void put_histogram(struct found *out, const struct separate_section *s)
 	for (int i = 0; i < MASKS_CELLS * MASKS_CELLS; i++) {
 		double a, delta;
 
-		masks_cell(s->masks, i / MASKS_CELLS, i % MASKS_CELLS, &a, &delta);
+		masks_cell(s->masks, i / MASKS_CELLS + 0.5, i % MASKS_CELLS + 0.5, &a,
+			&delta);
 		const double row[4] = { (double)s->number, a, delta / (double)out->rate,
 			masks_histogram(s->masks)[i] };
 

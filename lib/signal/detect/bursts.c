@@ -3,6 +3,7 @@
 #include "num/robust.h"
 #include "num/sigmas.h"
 #include <math.h>
+#include <string.h>
 
 /* Differences from which the level of the noise is estimated: 256 give it with a standard
  * error of 7 %. */
@@ -37,22 +38,18 @@ static int exceeds(const double *d, size_t n)
 /* Samples in the shortest means. */
 enum { FIRST = 4 };
 
-/* Sums of the n samples in fours, to x, which are as good as means; their number. */
-static size_t sum_fours(const double *y, size_t n, double *x)
-{
-	for (size_t i = 0; i < n / FIRST; i++) {
-		x[i] = 0;
-		for (size_t k = 0; k < FIRST; k++)
-			x[i] += y[i * FIRST + k];
-	}
-	return n / FIRST;
-}
-
 static size_t sum_pairs(double *x, size_t n)
 {
 	for (size_t i = 0; 2 * i + 1 < n; i++)
 		x[i] = x[2 * i] + x[2 * i + 1];
 	return n / 2;
+}
+
+/* Sums of the n samples in fours, to x, which are as good as means; their number. */
+static size_t sum_fours(const double *y, size_t n, double *x)
+{
+	memcpy(x, y, n * sizeof *x);
+	return sum_pairs(x, sum_pairs(x, n));
 }
 
 static double second_difference(const double *x)

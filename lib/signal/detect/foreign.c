@@ -1,5 +1,6 @@
 /* foreign.c - see foreign.h */
 #include "signal/detect/foreign.h"
+#include "num/dot.h"
 #include "num/sigmas.h"
 #include "signal/detect/spikes.h"
 #include <math.h>
@@ -30,17 +31,21 @@ static int is_noise(double rest, double dof, double energy)
 	return dof > 0 && rest < dof + slack && rest - dof + slack < WRONG * energy;
 }
 
+static int is_hidden(const struct foreign_stretch *s, int c, size_t i)
+{
+	return s->hidden[c] && s->hidden[c][i];
+}
+
 static double square_sum(
 	const struct foreign_stretch *s, int c, size_t from, size_t to, double *count)
 {
 	double sum = 0;
 
-	for (size_t i = from; i < to; i++) {
-		if (s->hidden[c] && s->hidden[c][i])
-			continue;
-		sum += s->y[c][i] * s->y[c][i];
-		++*count;
-	}
+	for (size_t i = from; i < to; i++)
+		if (!is_hidden(s, c, i)) {
+			sum += s->y[c][i] * s->y[c][i];
+			++*count;
+		}
 	return sum;
 }
 
@@ -100,8 +105,7 @@ static void find_shock(
 	rest = square_sum(s, 0, 0, shift, &alone) +
 	       square_sum(s, 1, n - shift, n, &alone);
 	for (size_t i = shift; i < n; i++)
-		if (!(s->hidden[0] && s->hidden[0][i]) &&
-			!(s->hidden[1] && s->hidden[1][i - shift]))
+		if (!is_hidden(s, 0, i) && !is_hidden(s, 1, i - shift))
 			add_pair(&a, s->y[0][i], s->y[1][i - shift]);
 	find_axis(&a);
 	rest += a.rest;
@@ -157,38 +161,35 @@ static double between(const double *y, double part, double *variance)
 	return sum;
 }
 
-/* The channels with a delay; wave (of s->n, or NULL): the waveform, NAN where not known.
- */
-static void compare(
-	const struct foreign_stretch *s, double delay, double *wave, struct axis *a)
+/* What y[0][i] has beside it in y[1], with a delay; 0: nothing, or, if all must be known,
+ * samples that are not. */
+static int second_at(
+	const struct foreign_stretch *s, double delay, size_t i, int known, double *y2)
 {
-	long whole = (long)floor(delay), n = (long)s->n;
-	double part = delay - (double)whole, variance;
+	long k = (long)i + (long)floor(delay);
+	double part = delay - floor(delay), variance;
 
-	if (!wave)
-		*a = (struct axis){ .count = 0 };
-	for (long i = 0; i < n; i++) {
-		long k = i + whole;
-		double y2;
+	if (k < 1 || k + 2 >= (long)s->n)
+		return 0;
+	if (known && (is_hidden(s, 0, i) ||
+			     (s->hidden[1] && memchr(s->hidden[1] + k - 1, 1, 4))))
+		return 0;
+	*y2 = s->y[1][k];
+	if (part > 0)
+		*y2 = between(s->y[1] + k, part, &variance) / sqrt(variance);
+	return 1;
+}
 
-		if (wave)
-			wave[i] = NAN;
-		if (k < 1 || k + 2 >= n ||
-			(!wave && ((s->hidden[0] && s->hidden[0][i]) ||
-					  (s->hidden[1] &&
-						  memchr(s->hidden[1] + k - 1, 1, 4)))))
-			continue;
-		y2 = s->y[1][k];
-		variance = 1;
-		if (part > 0)
-			y2 = between(s->y[1] + k, part, &variance) / sqrt(variance);
-		if (wave)
-			wave[i] = a->along[0] * s->y[0][i] + a->along[1] * y2;
-		else
-			add_pair(a, s->y[0][i], y2);
-	}
-	if (!wave)
-		find_axis(a);
+static struct axis compare(const struct foreign_stretch *s, double delay)
+{
+	struct axis a = { .count = 0 };
+	double y2;
+
+	for (size_t i = 0; i < s->n; i++)
+		if (second_at(s, delay, i, 1, &y2))
+			add_pair(&a, s->y[0][i], y2);
+	find_axis(&a);
+	return a;
 }
 
 /* A run of values that have been replaced by their mean. */
@@ -246,14 +247,16 @@ static enum num_status one_lobe(const double *x, size_t n, double *least)
 }
 
 static enum num_status find_bubble(const struct foreign_stretch *s, double delta_min,
-	double delta_max, double energy, double *wave, struct foreign *out)
+	double delta_max, double energy, struct foreign *out)
 {
 	struct axis a, best = { .rest = INFINITY };
-	double delay = 0, lobe = INFINITY, dof, sum = 0, square = 0, middle = 0;
+	double delay = 0, lobe = INFINITY, dof, sum = 0, square = 0, middle = 0, y2;
+	double *wave;
 	size_t n = 0;
+	enum num_status status;
 
 	for (double d = ceil(delta_min); d <= delta_max; d++) {
-		compare(s, d, NULL, &a);
+		a = compare(s, d);
 		if (a.rest < best.rest) {
 			best = a;
 			delay = d;
@@ -261,7 +264,7 @@ static enum num_status find_bubble(const struct foreign_stretch *s, double delta
 	}
 	for (double step = 0.5; step > 0.05; step /= 2)
 		for (int side = -1; side <= 1; side += 2) {
-			compare(s, delay + side * step, NULL, &a);
+			a = compare(s, delay + side * step);
 			if (a.rest / a.count < best.rest / best.count) {
 				best = a;
 				delay += side * step;
@@ -270,27 +273,30 @@ static enum num_status find_bubble(const struct foreign_stretch *s, double delta
 	if (!is_noise(best.rest, (1 - s->lost) * best.count, energy) ||
 		!is_common(&best) || best.along[1] < 0)
 		return NUM_OK;
-	compare(s, delay, wave, &best);
-	for (size_t i = 0; i < s->n; i++)
-		if (!isnan(wave[i])) {
-			middle += (double)i * wave[i] * wave[i];
-			square += wave[i] * wave[i];
-			sum += wave[i];
-			wave[n++] = wave[i];
-		}
-	for (size_t i = 0; sum < 0 && i < n; i++)
-		wave[i] = -wave[i];
-	if (one_lobe(wave, n, &lobe) != NUM_OK)
+	wave = malloc(s->n * sizeof *wave);
+	if (!wave)
 		return NUM_MEMORY;
+	/* The lobes of a particle are lobes where the converter limits them, too. */
+	for (size_t i = 0; i < s->n; i++)
+		if (second_at(s, delay, i, 0, &y2)) {
+			double y = best.along[0] * s->y[0][i] + best.along[1] * y2;
+
+			middle += (double)i * y * y;
+			square += y * y;
+			sum += y;
+			wave[n++] = y;
+		}
+	if (sum < 0)
+		negate(wave, n);
+	status = one_lobe(wave, n, &lobe);
 	dof = (1 - s->lost) * 2 * best.count;
-	if (!is_noise(best.rest + lobe, dof, energy))
-		return NUM_OK;
-	out->verdict = SEPARATE_BUBBLE;
-	out->chi2 = (best.rest + lobe) / dof;
-	out->t[0] = middle / square;
-	out->t[1] = out->t[0] + delay;
-	out->amplitude = best.along[0] * wave[highest(wave, n)] * (sum < 0 ? -1 : 1);
-	return NUM_OK;
+	if (status == NUM_OK && is_noise(best.rest + lobe, dof, energy))
+		*out = (struct foreign){ SEPARATE_BUBBLE,
+			{ middle / square, middle / square + delay },
+			best.along[0] * wave[highest(wave, n)] * (sum < 0 ? -1 : 1),
+			(best.rest + lobe) / dof };
+	free(wave);
+	return status;
 }
 
 static const struct foreign none = { SEPARATE_MISFIT, { NAN, NAN }, NAN, NAN };
@@ -308,7 +314,7 @@ static enum num_status find_impulse(
 		for (size_t i = 0; i < s->n; i++) {
 			double y = s->y[c][i];
 
-			if (s->hidden[c] && s->hidden[c][i])
+			if (is_hidden(s, c, i))
 				continue;
 			if (!flags[i]) {
 				*rest += y * y;
@@ -344,17 +350,15 @@ void foreign_at_once(const struct foreign_stretch *s, struct foreign *out)
 enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
 	double delta_max, struct foreign *out)
 {
-	double *wave = malloc((s->n ? s->n : 1) * sizeof *wave);
-	enum num_status status = NUM_MEMORY;
 	double energy = energy_of(s), rest = 0, count = 0;
 	struct foreign impulse = none;
 
 	*out = none;
-	if (wave)
-		status = find_impulse(s, &rest, &count, &impulse);
-	if (status == NUM_OK && s->shift > 0)
+	if (find_impulse(s, &rest, &count, &impulse) != NUM_OK)
+		return NUM_MEMORY;
+	if (s->shift > 0)
 		find_shock(s, s->shift, energy, out);
-	if (status == NUM_OK && out->verdict == SEPARATE_MISFIT)
+	if (out->verdict == SEPARATE_MISFIT)
 		find_transient(s, energy, out);
 	/* A weak particle beside it would be no more than noise either. */
 	count *= 1 - s->lost;
@@ -363,8 +367,7 @@ enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
 			(out->verdict != SEPARATE_MISFIT &&
 				rest < count + slack_of(count))))
 		*out = impulse;
-	if (status == NUM_OK && out->verdict == SEPARATE_MISFIT)
-		status = find_bubble(s, delta_min, delta_max, energy, wave, out);
-	free(wave);
-	return status;
+	return out->verdict == SEPARATE_MISFIT
+		       ? find_bubble(s, delta_min, delta_max, energy, out)
+		       : NUM_OK;
 }

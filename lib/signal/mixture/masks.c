@@ -120,11 +120,11 @@ void masks_free(struct masks *m)
 	free(m);
 }
 
-void masks_cell(const struct masks *m, int i, int j, double *attenuation, double *delta)
+void masks_cell(
+	const struct masks *m, double i, double j, double *attenuation, double *delta)
 {
-	*attenuation = (i + 0.5) * m->par.gain_max / CELLS;
-	*delta = m->par.delta_min +
-		 (j + 0.5) * (m->par.delta_max - m->par.delta_min) / CELLS;
+	*attenuation = i * m->par.gain_max / CELLS;
+	*delta = m->par.delta_min + j * (m->par.delta_max - m->par.delta_min) / CELLS;
 }
 
 const double *masks_histogram(const struct masks *m)
@@ -160,11 +160,11 @@ static int find_peaks(struct masks *m, struct masks_source *source)
 	int n = histogram_peaks(&m->histogram, given ? given : MASKS_SOURCES_MAX,
 		given ? 0 : m->par.peak_share, peak);
 
-	for (int k = 0; k < n; k++)
-		source[k] = (struct masks_source){ peak[k].i * m->par.gain_max / CELLS,
-			m->par.delta_min +
-				peak[k].j * (m->par.delta_max - m->par.delta_min) / CELLS,
-			peak[k].share };
+	for (int k = 0; k < n; k++) {
+		masks_cell(m, peak[k].i, peak[k].j, &source[k].attenuation,
+			&source[k].delta);
+		source[k].weight = peak[k].share;
+	}
 	return n;
 }
 

@@ -60,9 +60,9 @@ enum num_status masks_find(struct masks *masks, const double *y1, const double *
 void masks_separate(struct masks *masks, int k, double *x);
 
 /* Weighted histogram of the last masks_find(): MASKS_CELLS * MASKS_CELLS, attenuation
- * by rows; the middle of cell (i, j). */
+ * by rows; what place (i, j) stands for, in cells. */
 const double *masks_histogram(const struct masks *masks);
-void masks_cell(
-	const struct masks *masks, int i, int j, double *attenuation, double *delta);
+void masks_cell(const struct masks *masks, double i, double j, double *attenuation,
+	double *delta);
 
 #endif

@@ -215,6 +215,14 @@ static double window_autocorrelation(size_t n, size_t lag, int squared)
 	return sum / all;
 }
 
+/* Factor of lag k by which an autocorrelation is truncated smoothly from last / 2 on. */
+static double keep_lag(size_t k, size_t last)
+{
+	double u = 2 * (double)k / (double)last - 1;
+
+	return u <= 0 ? 1 : u < 1 ? 0.5 + 0.5 * cos(M_PI * u) : 0;
+}
+
 /* The power of which r is the autocorrelation, in its place. */
 static enum num_status positive_spectrum(double *r, size_t bins)
 {
@@ -234,12 +242,11 @@ static enum num_status sharpen(double *power, size_t bins)
 	enum num_status status = fft_even(power, bins);
 
 	for (size_t k = 0; k < COLOUR_BINS; k++) {
-		double u = 2 * (double)k / (double)last - 1;
-		double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
+		double keep = keep_lag(k, last);
 
-		power[k] *= k >= last ? 0
-				      : keep / window_autocorrelation(points, k, 0) /
-						(double)points;
+		power[k] *= keep > 0 ? keep / window_autocorrelation(points, k, 0) /
+					       (double)points
+				     : 0;
 	}
 	return status == NUM_OK ? positive_spectrum(power, COLOUR_BINS) : status;
 }
@@ -373,14 +380,8 @@ enum num_status colour_smooth(struct colour *colour)
 	if (fft_even(power, COLOUR_BINS) != NUM_OK)
 		return NUM_MEMORY;
 	last = last_lag(power, points, half / 2);
-	for (size_t k = 0; k <= half; k++) {
-		double u = 2 * (double)k / (double)last - 1;
-
-		power[k] *= (u <= 0         ? 1
-				    : u < 1 ? 0.5 + 0.5 * cos(M_PI * u)
-					    : 0) /
-			    (double)points;
-	}
+	for (size_t k = 0; k <= half; k++)
+		power[k] *= keep_lag(k, last) / (double)points;
 	return positive_spectrum(power, COLOUR_BINS);
 }
 

@@ -36,24 +36,21 @@ static void hide_last(struct buffer *b, size_t lost)
 		buffer_hide(b, i);
 }
 
+/* Adds a sample to the mean; lost: so many of the last ones are not measured. */
 static void put(struct buffer *b, double x, size_t lost)
 {
-	b->x[b->n] = x;
-	b->hidden[b->n++] = 0;
-	hide_last(b, lost);
-}
+	const size_t ratio = b->ratio ? b->ratio : 1;
 
-/* Adds a sample to the mean; lost: so many of the last ones are not measured. */
-static void put_part(struct buffer *b, double x, size_t lost)
-{
 	b->sum += x;
 	b->lost |= lost > 0;
 	b->parts++;
 	if (lost > b->parts) /* in means before this one */
-		hide_last(b, (lost - b->parts - 1) / b->ratio + 1);
-	if (b->parts < b->ratio)
+		hide_last(b, (lost - b->parts - 1) / ratio + 1);
+	if (b->parts < ratio)
 		return;
-	put(b, b->sum / (double)b->ratio, (size_t)b->lost);
+	b->x[b->n] = b->sum / (double)ratio;
+	b->hidden[b->n++] = 0;
+	hide_last(b, (size_t)b->lost);
 	b->parts = 0;
 	b->sum = b->lost = 0;
 }
@@ -61,13 +58,10 @@ static void put_part(struct buffer *b, double x, size_t lost)
 enum num_status buffer_append(
 	struct buffer *b, const double *x, const size_t *lost, size_t n)
 {
-	if (reserve(b, b->ratio ? n / b->ratio + 1 : n) != NUM_OK)
+	if (reserve(b, n / (b->ratio ? b->ratio : 1) + 1) != NUM_OK)
 		return NUM_MEMORY;
 	for (size_t i = 0; i < n; i++)
-		if (b->ratio)
-			put_part(b, x[i], lost[i]);
-		else
-			put(b, x[i], lost[i]);
+		put(b, x[i], lost[i]);
 	return NUM_OK;
 }
 
@@ -83,7 +77,7 @@ enum num_status buffer_average(
 	if (reserve(mean, n / ratio + 1) != NUM_OK)
 		return NUM_MEMORY;
 	for (size_t i = skip; i < n; i++)
-		put_part(mean, b->x[i], b->hidden[i]);
+		put(mean, b->x[i], b->hidden[i]);
 	return NUM_OK;
 }
 

@@ -20,8 +20,8 @@ struct buffer {
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
 	size_t n, room, flags; /* samples stored; room for them, and for flags */
 	double missing;        /* samples hidden so far */
-	size_t ratio; /* samples of the record averaged into one; 0: not averaged */
-	size_t parts; /* of the next one, so far: */
+	size_t ratio;          /* samples of the record averaged into one; 0: 1 */
+	size_t parts;          /* of the next one, so far: */
 	double sum;
 	int lost; /* 1: the converter has not measured all of them */
 	long long begin, white, flat, clean;

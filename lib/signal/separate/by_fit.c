@@ -108,17 +108,6 @@ static enum separate_status explain(
 							  : status;
 }
 
-/* Ends a section with the row of an event found in the window. */
-static enum separate_status give_event(struct separate *s, const struct account *a,
-	long long to, const struct foreign *event, long long *next)
-{
-	s->carried = s->failures = 0;
-	*next = to;
-	return s->same_shock ? SEPARATE_OK
-			     : separate_give_event(
-				       s, a->from, a->from + (long long)a->n, event);
-}
-
 enum separate_status separate_fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
@@ -164,8 +153,13 @@ enum separate_status separate_fit_section(
 		return SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && !verdict_is_foreign(event.verdict))
 		status = explain(s, &a, &event);
-	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
-		return give_event(s, &a, to, &event, next);
+	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict)) {
+		s->carried = s->failures = 0;
+		*next = to;
+		return s->same_shock ? SEPARATE_OK
+				     : separate_give_event(s, a.from,
+					       a.from + (long long)a.n, &event);
+	}
 	for (int i = 0; i < a.m; i++) {
 		s->pulse[i].t -= (double)before;
 		s->both[i].t -= (double)before;

@@ -99,15 +99,13 @@ enum separate_status separate_mask_section(
 		all = verdict[k] > all ? verdict[k] : all;
 		s->counters.rows++;
 	}
-	if (s->par.on_section)
-		s->par.on_section(
-			s->par.context, &(struct separate_section){ .number = s->number,
-						.begin = from,
-						.end = to,
-						.sources = m,
-						.chi2 = NAN,
-						.verdict = all,
-						.source = s->source,
-						.masks = s->masks });
-	return SEPARATE_OK;
+	return separate_queue_report(s,
+		&(struct separate_section){ .number = s->number,
+			.begin = from,
+			.end = to,
+			.sources = m,
+			.chi2 = NAN,
+			.verdict = all,
+			.masks = s->masks },
+		(size_t)m);
 }

@@ -33,6 +33,11 @@ struct converter {
  * Returns how many of the last samples, including this one, turn out not to have been
  * measured; those returned before do not count again. */
 size_t converter_next(struct converter *c, double *x);
+/* 1 if all samples so far are equal. */
+static inline int converter_is_constant(const struct converter *c)
+{
+	return (double)c->run == c->samples;
+}
 /* 1 if x is at a limit, by all samples so far. */
 int converter_saturates(const struct converter *c, double x);
 /* Looks in sign x[0..n), hidden[0..n) apart, for limits with noise behind them, such as

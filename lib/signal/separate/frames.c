@@ -34,6 +34,19 @@ static struct converter *converter_of(struct separate *s, int sensor, int compon
 	return &s->converter[components(s) * sensor + component];
 }
 
+enum separate_status separate_check_alive(const struct separate *s)
+{
+	const struct converter *c = s->converter;
+
+	if (s->counters.samples < (double)s->par.learn && !s->ended)
+		return SEPARATE_OK;
+	for (int sensor = 0; sensor < 2; sensor++, c += components(s))
+		if (converter_is_constant(c) &&
+			converter_is_constant(c + components(s) - 1))
+			return sensor ? SEPARATE_SILENT_2 : SEPARATE_SILENT_1;
+	return SEPARATE_OK;
+}
+
 /* Samples are tested as the converter gives them, before they are turned.  A sample of a
  * sensor is hidden where one component of it was not measured. */
 enum num_status separate_append(struct separate *s, const double *x, size_t n)

@@ -49,31 +49,14 @@ static void follow_noise(struct separate *s, size_t n)
 			s->buffer[k].begin + (long long)known);
 }
 
-/* 1 if a channel stands still, or clips, for longer than limit in its n oldest samples.
- */
-static int stands(const struct buffer *b, size_t n, size_t limit)
-{
-	size_t run = 0;
-
-	for (size_t i = 0; i < n && run <= limit; i++)
-		run = b->hidden[i] ? run + 1 : 0;
-	return run > limit;
-}
-
 /* The longest stretch of the n oldest samples in which a channel does not stand still, or
- * clip, for as long as a block: its first sample and its length.  All of them if neither
- * channel does so, or both, as in a record without noise, or if it is too short to be
- * learned from, as that of a dead sensor is. */
-static size_t measured(const struct separate *s, size_t n, size_t *from)
+ * clip, for longer than limit: its length, and its first sample. */
+static size_t longest_measured(
+	const struct buffer *b, size_t n, size_t limit, size_t *from)
 {
-	const size_t limit = n / BLOCKS;
-	const int second = stands(&s->buffer[1], n, limit);
-	const struct buffer *b = &s->buffer[second];
 	size_t run = 0, begin = 0, best = 0;
 
 	*from = 0;
-	if (stands(&s->buffer[0], n, limit) == second)
-		return n;
 	for (size_t i = 0; i <= n; i++) {
 		size_t end = n;
 
@@ -89,8 +72,25 @@ static size_t measured(const struct separate *s, size_t n, size_t *from)
 		}
 		begin = i + 1;
 	}
-	*from = best < SEPARATE_SHORTEST ? 0 : *from;
-	return best < SEPARATE_SHORTEST ? n : best;
+	return best;
+}
+
+/* The same of the channel that does so for a block.  All samples if neither channel does,
+ * or both, as in a record without noise, or if it is too short to be learned from, as
+ * that of a dead sensor is. */
+static size_t measured(const struct separate *s, size_t n, size_t *from)
+{
+	size_t at[2], best[2];
+	int second;
+
+	for (int c = 0; c < 2; c++)
+		best[c] = longest_measured(&s->buffer[c], n, n / BLOCKS, &at[c]);
+	second = best[1] < n;
+	*from = 0;
+	if ((best[0] < n) == second || best[second] < SEPARATE_SHORTEST)
+		return n;
+	*from = at[second];
+	return best[second];
 }
 
 /* The noise of the second components, from the n oldest samples. */
@@ -556,23 +556,4 @@ enum separate_status separate_learn(struct separate *s)
 enum separate_status separate_start_kept(struct separate *s)
 {
 	return s->cal.duration >= SECTIONS_SHORTEST ? start(s, 0) : SEPARATE_FAST;
-}
-
-enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n)
-{
-	double before = s->counters.samples;
-	size_t channels = (size_t)s->channels;
-
-	for (size_t i = 0; i < channels * n && before < (double)s->par.learn; i++) {
-		size_t channel = i % channels;
-
-		if (before == 0 && i < channels)
-			s->first[i] = x[i];
-		s->varies[2 * channel / channels] |= x[i] != s->first[channel];
-	}
-	if (before + (double)n < (double)s->par.learn && !s->ended)
-		return SEPARATE_OK;
-	return !s->varies[0]   ? SEPARATE_SILENT_1
-	       : !s->varies[1] ? SEPARATE_SILENT_2
-			       : SEPARATE_OK;
 }

@@ -282,7 +282,7 @@ static enum separate_status look(struct renewal *r)
 	long long origin = now->origin;
 	size_t learn = 0;
 
-	if (r->only || r->next.s)
+	if (r->next.s)
 		return SEPARATE_OK;
 	if (!r->judged && (is_ready(now) || is_unlearned(now))) {
 		r->judged = 1;
@@ -405,7 +405,7 @@ static void forget(struct renewal *r)
 
 	if (r->next.s && r->next.fed < from)
 		from = r->next.fed;
-	if (!r->only && r->upto - kept < from)
+	if (r->upto - kept < from)
 		from = r->upto - kept;
 	if (from - r->from < kept / 2)
 		return;

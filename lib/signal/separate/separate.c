@@ -314,14 +314,13 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 	enum separate_status status = SEPARATE_OK;
 
 	/* What is kept is known before the first sample. */
-	if (s->par.kept) {
-		status = separate_check_alive(s, x, n);
-		if (!s->calibrated && status == SEPARATE_OK)
-			status = separate_start_kept(s);
-	}
+	if (s->par.kept && !s->calibrated)
+		status = separate_start_kept(s);
 	if (separate_append(s, x, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n / s->ratio;
+	if (s->par.kept && status == SEPARATE_OK)
+		status = separate_check_alive(s);
 	for (int c = 0; c < 2; c++)
 		s->counters.missing[c] = s->buffer[c].missing;
 	if (!s->calibrated && status == SEPARATE_OK)
@@ -360,7 +359,7 @@ enum separate_status separate_end(struct separate *s)
 		status = s->counters.samples < SEPARATE_SHORTEST ? SEPARATE_SHORT
 								 : separate_learn(s);
 	if (status == SEPARATE_OK && s->par.kept)
-		status = separate_check_alive(s, NULL, 0);
+		status = separate_check_alive(s);
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : s->reason;

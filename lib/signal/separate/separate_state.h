@@ -69,8 +69,6 @@ struct separate {
 	int default_learn; /* 1: par.learn is SEPARATE_LEARN */
 	int calibrated, ended;
 	struct instrument kept;     /* par.kept, whose cal is moved to cal */
-	int varies[2];              /* 1: the sensor has not been constant so far */
-	double first[CHANNELS_MAX]; /* frame of a record with a kept instrument */
 	double level[CHANNELS_MAX], levels;
 	/* Level of the same samples and of the last ones, as they are fitted, and whether
 	 * and how much it has changed. */
@@ -199,6 +197,8 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 enum num_status separate_append(struct separate *s, const double *x, size_t n);
 /* 1 if a component of sample i of the buffers is at its limit. */
 int separate_saturates(struct separate *s, int sensor, size_t i);
+/* SILENT if a sensor has been constant for as long as one would learn. */
+enum separate_status separate_check_alive(const struct separate *s);
 /* Hides the samples at a limit of the converter that only later samples have revealed. */
 void separate_review(struct separate *s);
 /* Looks for limits with noise behind them in the n oldest samples; 1 if there are.
@@ -251,10 +251,6 @@ enum separate_status separate_learn_clearly(struct separate *s);
 size_t separate_wants(const struct separate *s);
 /* Uses a kept instrument for the record. */
 enum separate_status separate_start_kept(struct separate *s);
-/* SILENT if, with a kept instrument, a channel is constant for as long as one would
- * learn. */
-enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n);
-
 /* averaging.c */
 
 /* Samples of a pulse above which means are separated. */

@@ -263,20 +263,15 @@ static void low_pass(
 	const struct scene *s, struct half *h, uint64_t frame, double *z, size_t n)
 {
 	double keep = exp(-2 * M_PI * s->par.corner / s->par.rate);
-	double fresh = sqrt(1 - keep * keep), a = h->color[0], b = h->color[1];
-	size_t i = 0;
+	double fresh = sqrt(1 - keep * keep);
 
-	if (frame == 0) { /* the first one has the lasting variance */
-		a = z[0];
-		b = z[1];
-		i = 1;
-	}
-	for (; i < n; i++) {
-		z[2 * i] = a = keep * a + fresh * z[2 * i];
-		z[2 * i + 1] = b = keep * b + fresh * z[2 * i + 1];
-	}
-	h->color[0] = a;
-	h->color[1] = b;
+	for (size_t c = 0; c < 2; c++)
+		for (size_t i = 0; i < n; i++) {
+			/* the first one has the lasting variance */
+			if (frame + i > 0)
+				z[2 * i + c] = keep * h->color[c] + fresh * z[2 * i + c];
+			h->color[c] = z[2 * i + c];
+		}
 }
 
 static void add_noise(struct scene *s, int q, double *x, size_t n)
