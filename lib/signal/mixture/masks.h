@@ -11,10 +11,9 @@
  * Bin 0 has no phase and is omitted, as are bins above the band of the pulse.  A pulse is
  * wider than a bin, so that the phase of a bin turns slower or faster than the frequency
  * w of its middle says: w' is that of one pulse of the expected shape under the same
- * windows (with 64 samples and a 100-sample pulse, 0.56 w in bin 1).  Peaks of the
- * smoothed histogram are sources; each cell belongs to the peak reached by moving to the
- * highest neighbour repeatedly, and the mask (3-17) of a source holds the bins of the
- * time-frequency plane whose cell belongs to it.
+ * windows (with 64 samples and a 100-sample pulse, 0.56 w in bin 1).  The peaks of the
+ * histogram are sources (histogram.h), and the mask (3-17) of a source holds the bins of
+ * the time-frequency plane whose cell belongs to it.
  *
  * Pulses that overlap share bins, which masks cannot separate: see duet(1).
  */

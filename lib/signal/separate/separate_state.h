@@ -68,7 +68,7 @@ struct separate {
 	struct calibration cal;
 	int default_learn; /* 1: par.learn is SEPARATE_LEARN */
 	int calibrated, ended;
-	struct instrument kept;     /* par.kept, whose cal is moved to cal */
+	struct instrument kept; /* par.kept, whose cal is moved to cal */
 	double level[CHANNELS_MAX], levels;
 	/* Level of the same samples and of the last ones, as they are fitted, and whether
 	 * and how much it has changed. */
