@@ -58,8 +58,8 @@ static double left_of(const double *y, double later, int *changed)
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
 	struct velocities v;
 
-	if (copy && work && seen && marks_find(y, N, work, &m[0]) == NUM_OK &&
-		marks_find(y + N, N, work, &m[1]) == NUM_OK &&
+	if (copy && work && seen && marks_find(y, N, 0, work, &m[0]) == NUM_OK &&
+		marks_find(y + N, N, 0, work, &m[1]) == NUM_OK &&
 		velocities_find(m, N, &v) == NUM_OK) {
 		memcpy(copy, y, 2 * N * sizeof *copy);
 		memcpy(seen, y, 2 * N * sizeof *seen);

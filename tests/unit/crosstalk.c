@@ -64,10 +64,10 @@ static int find(const double *y, const unsigned char *const hidden[2], double sh
 	const double *const x[] = { y, y + N };
 	double *work = malloc(2 * N * sizeof *work);
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
-	enum num_status status = work ? marks_find(y, N, work, &m[0]) : NUM_MEMORY;
+	enum num_status status = work ? marks_find(y, N, 0, work, &m[0]) : NUM_MEMORY;
 
 	if (status == NUM_OK)
-		status = marks_find(y + N, N, work, &m[1]);
+		status = marks_find(y + N, N, 0, work, &m[1]);
 	if (status == NUM_OK)
 		status = crosstalk_find(x, hidden, N, m, share);
 	marks_clear(&m[0]);

@@ -44,16 +44,49 @@ static enum num_status find(const double *y1, const double *y2, struct velocitie
 {
 	double *work = malloc(2 * N * sizeof *work);
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
-	enum num_status status = work ? marks_find(y1, N, work, &m[0]) : NUM_MEMORY;
+	enum num_status status = work ? marks_find(y1, N, 0, work, &m[0]) : NUM_MEMORY;
 
 	if (status == NUM_OK)
-		status = marks_find(y2, N, work, &m[1]);
+		status = marks_find(y2, N, 0, work, &m[1]);
 	if (status == NUM_OK)
 		status = velocities_find(m, N, v);
 	marks_clear(&m[0]);
 	marks_clear(&m[1]);
 	free(work);
 	return status;
+}
+
+/* Marks in white noise 1 with a random walk of this step: all are false. */
+static size_t count_false(double step, double known, double *y, double *work)
+{
+	struct marks m;
+	size_t count = 0;
+	double walk = 0, z[2];
+
+	for (int i = 0; i < N; i++) {
+		philox_normal2(4, 0, RNG_NOISE, (uint64_t)i, z);
+		y[i] = z[0] + (walk += step * z[1]);
+	}
+	count = marks_find(y, N, known, work, &m) == NUM_OK ? m.count : N;
+	marks_clear(&m);
+	return count;
+}
+
+/* A baseline that is not known to drift looks like slow particles. */
+static void test_drift(double *y)
+{
+	static const double steps[] = { 0.01, 0.05, 0.2 };
+	double *work = malloc(2 * N * sizeof *work);
+
+	for (size_t k = 0; work && k < sizeof steps / sizeof *steps; k++) {
+		size_t count = count_false(steps[k], steps[k], y, work);
+
+		/* Noise exceeds 5 once in 1.7e6 products, of which there are 1e6. */
+		ok(count <= 3, "a walk of steps of %g has no marks (%zu)", steps[k],
+			count);
+	}
+	ok(work && count_false(0.2, 0, y, work) > 20, "one that is not known has");
+	free(work);
 }
 
 int main(void)
@@ -92,6 +125,7 @@ int main(void)
 	}
 	ok(find(y1, y2, &v) == NUM_OK && v.ratio == 0,
 		"nor has one whose pulses are at other times");
+	test_drift(y1);
 	free(y1);
 	free(y2);
 	return tap_done();

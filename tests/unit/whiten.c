@@ -361,6 +361,27 @@ static void test_no_drift(double corner)
 		none, TIMES);
 }
 
+/* Pulses every 500 samples leave no longer segment than 256 samples to noise. */
+static void test_drift_between_pulses(void)
+{
+	const double step = 0.05;
+	struct colour noise;
+
+	for (unsigned c = 0; c < 2; c++) {
+		make_noise(y[c], N, 1, c);
+		add_walk(y[c], N, step, 2 + c);
+		for (size_t i = 0; i + 60 < N; i += 500)
+			for (size_t k = 0; k < 60; k++)
+				y[c][i + k] +=
+					100 * sin(2 * M_PI * ((double)k + 0.5) / 60);
+	}
+	/* Half of N is in such segments: twice the scatter of the test below, and bins
+	 * that are four times as wide. */
+	ok(colour_power(y[0], y[1], N, &noise) == NUM_OK,
+		"the noise between pulses has a spectrum");
+	near(noise.drift / (step * step), 1, 0.25, "its drift is measured");
+}
+
 /* Steps of 0.05 double the power of the noise at 0.8 % of the rate. */
 static void test_drift(void)
 {
@@ -437,6 +458,7 @@ int main(void)
 	test_no_drift(0.05);
 	test_no_drift(0.15);
 	test_drift();
+	test_drift_between_pulses();
 	ok(whitening_of_noise(&w, silence, 0, 9, WHITEN_COLOURED) == NUM_DOMAIN,
 		"a noise without power cannot be made white");
 	return tap_done();

@@ -7,6 +7,7 @@
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include "signal/learn/velocities.h"
+#include "signal/noise/colour.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -439,6 +440,17 @@ static enum separate_status without_crosstalk(
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
+/* Standard deviation of a step of the random walk of the baselines of y and y + n; 0:
+ * they do not drift. */
+static enum num_status find_step(const double *y, size_t n, double *step)
+{
+	struct colour noise;
+	enum num_status status = colour_power(y, y + n, n, &noise);
+
+	*step = status == NUM_OK ? sqrt(noise.drift * noise.power[0]) : 0;
+	return status == NUM_MEMORY ? status : NUM_OK;
+}
+
 /* The range of velocities and the crosstalk, from the channels without their lines, which
  * look like pulses, and into seen, unless NULL, both channels without bubbles. */
 static enum separate_status survey(
@@ -450,6 +462,7 @@ static enum separate_status survey(
 	struct marks m[2] = { { .count = 0 }, { .count = 0 } };
 	struct calibration c = { .tones = 0 };
 	struct lines lines;
+	double step = 0;
 	enum separate_status status = SEPARATE_MEMORY;
 
 	if (y) {
@@ -457,9 +470,11 @@ static enum separate_status survey(
 		x[1] = memcpy(y + n, look->x[1], n * sizeof *y);
 		status = find_lines(look->par, y, y + n, n, y + 2 * n, &c, &lines);
 	}
+	if (status == SEPARATE_OK && find_step(y, n, &step) != NUM_OK)
+		status = SEPARATE_MEMORY;
 	if (status == SEPARATE_OK &&
-		(marks_find(y, n, y + 2 * n, &m[0]) != NUM_OK ||
-			marks_find(y + n, n, y + 2 * n, &m[1]) != NUM_OK ||
+		(marks_find(y, n, step, y + 2 * n, &m[0]) != NUM_OK ||
+			marks_find(y + n, n, step, y + 2 * n, &m[1]) != NUM_OK ||
 			velocities_find(m, n, v) != NUM_OK ||
 			crosstalk_find(x, look->par->hidden, n, m, crosstalk) != NUM_OK))
 		status = SEPARATE_MEMORY;

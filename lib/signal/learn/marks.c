@@ -49,9 +49,11 @@ static int by_value(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-/* Pulses of either kind with durations from least to most. */
-static enum num_status find(const double *x, size_t n, int lobe, double least,
-	double most, double *work, struct marks *m)
+/* Pulses of either kind with durations from least to most.  The variance of the product
+ * with a sine of T samples, of energy 1, is that of white noise, and step^2 T^2 times the
+ * mean square of its integral, 3 / (4 pi^2). */
+static enum num_status find(const double *x, size_t n, int lobe, double step,
+	double least, double most, double *work, struct marks *m)
 {
 	double noise = robust_noise(x, NULL, n, work), *z = work, *out = work + n;
 	size_t kept = 0;
@@ -62,6 +64,8 @@ static enum num_status find(const double *x, size_t n, int lobe, double least,
 	for (double T = least; T < most; T *= exp(MARKS_STEP)) {
 		size_t q = T > 2 * POINTS ? (size_t)(T / POINTS) : 1, count = n / q;
 		int points = (int)(T / (double)q + 0.5);
+		double walk = step / noise * points * (double)q / M_PI;
+		double spread = sqrt(1 + 0.75 * walk * walk);
 
 		for (size_t i = 0; i < count; i++) {
 			z[i] = 0;
@@ -73,13 +77,13 @@ static enum num_status find(const double *x, size_t n, int lobe, double least,
 			double a = fabs(out[i - 1]), b = fabs(out[i]),
 			       c = fabs(out[i + 1]), at;
 
-			if (b < SIGMAS_NEVER || b < a || b <= c)
+			if (b < SIGMAS_NEVER * spread || b < a || b <= c)
 				continue;
 			if (room_for(&m->mark, &m->room, m->count + 1, sizeof *m->mark))
 				return NUM_MEMORY;
 			at = (double)i + parabola_top(a, b, c) + (points % 2 ? 0.5 : 0);
 			m->mark[m->count++] = (struct mark){ at * (double)q,
-				points * (double)q, out[i] };
+				points * (double)q, out[i] / spread };
 		}
 	}
 	if (m->count == 0)
@@ -98,15 +102,16 @@ static enum num_status find(const double *x, size_t n, int lobe, double least,
 	return NUM_OK;
 }
 
-enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m)
+enum num_status marks_find(
+	const double *x, size_t n, double step, double *work, struct marks *m)
 {
-	return find(x, n, 0, SHAPE_SHORTEST, LONGEST * (double)n, work, m);
+	return find(x, n, 0, step, SHAPE_SHORTEST, LONGEST * (double)n, work, m);
 }
 
 enum num_status marks_find_lobes(const double *x, size_t n, double least, double most,
 	double *work, struct marks *m)
 {
-	return find(x, n, 1, least, most, work, m);
+	return find(x, n, 1, 0, least, most, work, m);
 }
 
 void marks_clear(struct marks *m)

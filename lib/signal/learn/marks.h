@@ -25,9 +25,10 @@ struct marks {
 	double noise; /* standard deviation */
 };
 
-/* Pulses of x[0 .. n).  work holds 2 n values.  Free *m with marks_clear(), also on
- * NUM_MEMORY. */
-enum num_status marks_find(const double *x, size_t n, double *work, struct marks *m);
+/* Pulses of x[0 .. n), whose baseline is a random walk of this standard deviation a
+ * sample. work holds 2 n values.  Free *m with marks_clear(), also on NUM_MEMORY. */
+enum num_status marks_find(
+	const double *x, size_t n, double step, double *work, struct marks *m);
 
 /* Lobes of one sign, of durations from least to most, of x without its median. */
 enum num_status marks_find_lobes(const double *x, size_t n, double least, double most,

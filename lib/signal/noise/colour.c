@@ -251,44 +251,52 @@ static enum num_status sharpen(double *power, size_t bins)
 	return status == NUM_OK ? positive_spectrum(power, COLOUR_BINS) : status;
 }
 
-/* Bins of which drift is estimated: Hann's window spreads the level of the record over
- * those below.  In 36 records that drift, 5 to 96 kHz, 895, 878, 894, 912 and 913 of 1004
- * particles are claimed rightly with the end at 16, 24, 32, 48 and 64. */
-enum { DRIFT_FIRST = 3, DRIFT_END = 32 };
+/* Bins of segments of the steps of a record of which drift is estimated: from
+ * DRIFT_FIRST, as low ones show the tails of pulses, to DRIFT_END of the longest
+ * segments, and at least to DRIFT_FEWEST, twice as many as there are unknown powers. With
+ * 1, 2 and 3 as the first, drift is found in 27, 24 and 20 of 36 records that drift, and
+ * in 19, 3 and 2 of 108 that do not; an end at 16, 32 and 64 finds 12, 24 and 26, the
+ * fewest of 5, 8 and 12 find 24, 24 and 25. */
+enum { DRIFT_FIRST = 2, DRIFT_END = 32, DRIFT_FEWEST = 6 };
 
-/* Power at frequency k / LONGEST of the sum of independent steps of variance 1. */
-static double walk(double k)
+/* Power of the steps of white noise at frequency k / segment, as its periodograms under a
+ * Hann window have it. */
+static double step_power(double k, size_t segment)
 {
-	double s = 2 * sin(M_PI * k / LONGEST);
-
-	return 1 / (s * s);
+	return 2 - 2 * window_autocorrelation(segment, 1, 0) *
+			   cos(2 * M_PI * k / (double)segment);
 }
 
-/* Powers at the lowest frequencies of white noise, of noise behind a low-pass of this
- * corner, in bins, and, if terms is 3, of a random walk: weighted least squares, the
- * weights those of exponential variates of the mean fitted.  *drift: as in struct colour.
- * Returns the deviance of these means; INFINITY: there is no solution. */
-static double fit_drift(
-	const double *power, int segments, double corner, int terms, double *drift)
+/* Powers, at the lowest frequencies of the steps of a record, of white noise, unless
+ * corner is 0 of noise behind a low-pass of this corner, in bins, and with a walk of a
+ * random walk: weighted least squares, the weights those of exponential variates of the
+ * mean fitted.  *drift: as in struct colour.  Returns the deviance of these means;
+ * INFINITY: there is no solution. */
+static double fit_steps(const struct quiet *steps, double corner, int walk, double *drift)
 {
-	enum { ROUNDS = 8, WALK = 2, MOST };
-	double x[MOST] = { power[DRIFT_END - 1] }, a[MOST * MOST], deviance = 0;
+	enum { ROUNDS = 8, MOST = 3 };
+	const int end = DRIFT_END * (int)steps->segment / LONGEST;
+	const int terms = 1 + (corner > 0) + walk;
+	double x[MOST] = { 0 }, a[MOST * MOST], deviance = 0, level;
 
 	for (int round = 0; round < ROUNDS; round++) {
 		double y[MOST] = { 0 };
 
 		memset(a, 0, sizeof a);
 		deviance = 0;
-		for (int k = DRIFT_FIRST; k < DRIFT_END; k++) {
-			double u = k / corner;
-			double term[MOST] = { 1, 1 / (1 + u * u),
-				walk(k) / walk(DRIFT_END) };
-			double mean = fmax(dot(x, term, MOST), 0.1 * power[k]);
-			double weight = segments / (mean * mean);
+		for (int k = DRIFT_FIRST; k <= (end > DRIFT_FEWEST ? end : DRIFT_FEWEST);
+			k++) {
+			double white = step_power(k, steps->segment);
+			double passed = white / (1 + pow(k / corner, 2));
+			double term[MOST] = { white, corner > 0 ? passed : 1, 1 };
+			double power = 0.5 * (steps->power[0][k] + steps->power[1][k]);
+			double mean =
+				round ? fmax(dot(x, term, MOST), 0.1 * power) : power;
+			double weight = 2 * steps->found / (mean * mean);
 
-			deviance += 2 * segments * (log(mean) + power[k] / mean);
+			deviance += 4 * steps->found * (log(mean) + power / mean);
 			for (int i = 0; i < terms; i++) {
-				y[i] += weight * term[i] * power[k];
+				y[i] += weight * term[i] * power;
 				for (int j = 0; j <= i; j++)
 					a[i * MOST + j] += weight * term[i] * term[j];
 			}
@@ -298,54 +306,82 @@ static double fit_drift(
 		cholesky_solve(a, (size_t)terms, MOST, y);
 		memcpy(x, y, sizeof x);
 	}
-	*drift = fmax(x[WALK] / ((x[0] + x[1]) * walk(DRIFT_END)), 0);
-	return x[0] + x[1] > 0 ? deviance : INFINITY;
+	level = x[0] + (corner > 0 ? x[1] : 0);
+	*drift = walk ? fmax(x[terms - 1] / level, 0) : 0;
+	return level > 0 ? deviance : INFINITY;
 }
 
 /* Variance of the steps of a random walk over the power of the other noise at the lowest
- * frequencies; 0 if noise behind a low-pass explains them as well. */
-static double find_drift(const double *power, int segments)
+ * frequencies; 0 unless it explains them clearly better than noise behind a low-pass, or
+ * both together clearly better than either: the tails of pulses look like both. */
+static double find_drift(const struct quiet *steps)
 {
-	double drift = 0, without = INFINITY, with = INFINITY;
+	const double clear = SIGMAS_RARELY * SIGMAS_RARELY;
+	double drift, both = 0, low_pass = INFINITY, beside = INFINITY;
+	double walk = fit_steps(steps, 0, 1, &drift);
 
 	/* A low-pass of a lower corner cannot be told from drift, and one of a higher
 	 * corner is white. */
 	for (double corner = 2 * DRIFT_FIRST; corner <= 2 * DRIFT_END; corner *= 1.25) {
-		double found = 0, deviance;
+		double found, deviance;
 
-		without = fmin(without, fit_drift(power, segments, corner, 2, &found));
-		deviance = fit_drift(power, segments, corner, 3, &found);
-		if (deviance < with) {
-			with = deviance;
-			drift = found;
+		low_pass = fmin(low_pass, fit_steps(steps, corner, 0, &found));
+		deviance = fit_steps(steps, corner, 1, &found);
+		if (deviance < beside) {
+			beside = deviance;
+			both = found;
 		}
 	}
-	return without - with > SIGMAS_RARELY * SIGMAS_RARELY ? drift : 0;
+	if (beside + clear < fmin(walk, low_pass - clear))
+		return both;
+	return walk + clear < low_pass ? drift : 0;
+}
+
+/* The noise of the differences of successive samples.  A window spreads the power of a
+ * walk from its lowest frequencies over others, but not that of its steps, which is
+ * white.
+ */
+static enum num_status find_steps(
+	const double *y1, const double *y2, size_t n, struct quiet *steps)
+{
+	const size_t count = n > 0 ? n - 1 : 0;
+	double *d = malloc((2 * count + 1) * sizeof *d);
+	enum num_status status = d ? NUM_OK : NUM_MEMORY;
+
+	for (size_t i = 0; d && i < count; i++) {
+		d[i] = y1[i + 1] - y1[i];
+		d[count + i] = y2[i + 1] - y2[i];
+	}
+	if (status == NUM_OK)
+		status = find_quiet(d, d + count, count, 0, steps);
+	free(d);
+	return status;
 }
 
 enum num_status colour_power(
 	const double *y1, const double *y2, size_t n, struct colour *colour)
 {
-	struct quiet quiet;
-	double *power = colour->power;
+	struct quiet quiet, steps;
 	enum num_status status = find_quiet(y1, y2, n, 0, &quiet);
 
 	colour->drift = 0;
+	if (status == NUM_OK)
+		status = find_steps(y1, y2, n, &steps);
 	if (status != NUM_OK)
 		return status;
+	if (is_enough(&steps))
+		colour->drift = find_drift(&steps);
+	if (colour->drift > 0)
+		quiet = steps;
 	for (int k = 0; k < COLOUR_BINS; k++)
-		power[k] = 0.5 * (quiet.power[0][k] + quiet.power[1][k]);
+		colour->power[k] = 0.5 * (quiet.power[0][k] + quiet.power[1][k]);
 	if (!is_enough(&quiet))
 		return NUM_DOMAIN;
-	if (quiet.segment == LONGEST)
-		colour->drift = find_drift(power, quiet.found);
-	if (colour->drift > 0) {
-		for (int k = DRIFT_FIRST; k < COLOUR_BINS; k++)
-			power[k] /= 1 + colour->drift * walk(k);
-		for (int k = 0; k < DRIFT_FIRST; k++)
-			power[k] = power[DRIFT_FIRST];
-	}
-	return sharpen(power, quiet.segment / 2 + 1);
+	for (int k = 1; colour->drift > 0 && k < COLOUR_BINS; k++)
+		colour->power[k] /= step_power(k, quiet.segment) + colour->drift;
+	if (colour->drift > 0)
+		colour->power[0] = colour->power[1];
+	return sharpen(colour->power, quiet.segment / 2 + 1);
 }
 
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,
@@ -383,6 +419,14 @@ enum num_status colour_smooth(struct colour *colour)
 	for (size_t k = 0; k <= half; k++)
 		power[k] *= keep_lag(k, last) / (double)points;
 	return positive_spectrum(power, COLOUR_BINS);
+}
+
+/* Power at frequency k / LONGEST of the sum of independent steps of variance 1. */
+static double walk(double k)
+{
+	double s = 2 * sin(M_PI * k / LONGEST);
+
+	return 1 / (s * s);
 }
 
 int colour_is_white(const struct colour *colour, double from)
