@@ -267,12 +267,13 @@ static double step_power(double k, size_t segment)
 			   cos(2 * M_PI * k / (double)segment);
 }
 
-/* Powers, at the lowest frequencies of the steps of a record, of white noise, unless
- * corner is 0 of noise behind a low-pass of this corner, in bins, and with a walk of a
- * random walk: weighted least squares, the weights those of exponential variates of the
- * mean fitted.  *drift: as in struct colour.  Returns the deviance of these means;
- * INFINITY: there is no solution. */
-static double fit_steps(const struct quiet *steps, double corner, int walk, double *drift)
+/* Powers, at the lowest frequencies, from bin first on, of the steps of a record, of
+ * white noise, unless corner is 0 of noise behind a low-pass of this corner, in bins, and
+ * with a walk of a random walk: weighted least squares, the weights those of exponential
+ * variates of the mean fitted.  *drift: as in struct colour.  Returns the deviance of
+ * these means; INFINITY: there is no solution. */
+static double fit_steps(
+	const struct quiet *steps, int first, double corner, int walk, double *drift)
 {
 	enum { ROUNDS = 8, MOST = 3 };
 	const int end = DRIFT_END * (int)steps->segment / LONGEST;
@@ -284,8 +285,7 @@ static double fit_steps(const struct quiet *steps, double corner, int walk, doub
 
 		memset(a, 0, sizeof a);
 		deviance = 0;
-		for (int k = DRIFT_FIRST; k <= (end > DRIFT_FEWEST ? end : DRIFT_FEWEST);
-			k++) {
+		for (int k = first; k <= (end > DRIFT_FEWEST ? end : DRIFT_FEWEST); k++) {
 			double white = step_power(k, steps->segment);
 			double passed = white / (1 + pow(k / corner, 2));
 			double term[MOST] = { white, corner > 0 ? passed : 1, 1 };
@@ -314,19 +314,19 @@ static double fit_steps(const struct quiet *steps, double corner, int walk, doub
 /* Variance of the steps of a random walk over the power of the other noise at the lowest
  * frequencies; 0 unless it explains them clearly better than noise behind a low-pass, or
  * both together clearly better than either: the tails of pulses look like both. */
-static double find_drift(const struct quiet *steps)
+static double find_drift(const struct quiet *steps, int first)
 {
 	const double clear = SIGMAS_RARELY * SIGMAS_RARELY;
 	double drift, both = 0, low_pass = INFINITY, beside = INFINITY;
-	double walk = fit_steps(steps, 0, 1, &drift);
+	double walk = fit_steps(steps, first, 0, 1, &drift);
 
 	/* A low-pass of a lower corner cannot be told from drift, and one of a higher
 	 * corner is white. */
 	for (double corner = 2 * DRIFT_FIRST; corner <= 2 * DRIFT_END; corner *= 1.25) {
 		double found, deviance;
 
-		low_pass = fmin(low_pass, fit_steps(steps, corner, 0, &found));
-		deviance = fit_steps(steps, corner, 1, &found);
+		low_pass = fmin(low_pass, fit_steps(steps, first, corner, 0, &found));
+		deviance = fit_steps(steps, first, corner, 1, &found);
 		if (deviance < beside) {
 			beside = deviance;
 			both = found;
@@ -369,8 +369,10 @@ enum num_status colour_power(
 		status = find_steps(y1, y2, n, &steps);
 	if (status != NUM_OK)
 		return status;
-	if (is_enough(&steps))
-		colour->drift = find_drift(&steps);
+	/* What is left of lines has little power at the lowest frequency, where a walk
+	 * has most. */
+	if (is_enough(&steps) && find_drift(&steps, 1) > 0)
+		colour->drift = find_drift(&steps, DRIFT_FIRST);
 	if (colour->drift > 0)
 		quiet = steps;
 	for (int k = 0; k < COLOUR_BINS; k++)
