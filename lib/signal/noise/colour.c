@@ -267,9 +267,9 @@ static double step_power(double k, size_t segment)
 			   cos(2 * M_PI * k / (double)segment);
 }
 
-/* Powers, at the lowest frequencies, from bin first on, of the steps of a record, of
- * white noise, unless corner is 0 of noise behind a low-pass of this corner, in bins, and
- * with a walk of a random walk: weighted least squares, the weights those of exponential
+/* Powers of white noise, unless corner is 0 of noise behind a low-pass of this corner, in
+ * bins, and with a walk of a random walk, at the lowest frequencies of the steps of a
+ * record, from bin first on: weighted least squares, the weights those of exponential
  * variates of the mean fitted.  *drift: as in struct colour.  Returns the deviance of
  * these means; INFINITY: there is no solution. */
 static double fit_steps(
@@ -313,7 +313,8 @@ static double fit_steps(
 
 /* Variance of the steps of a random walk over the power of the other noise at the lowest
  * frequencies; 0 unless it explains them clearly better than noise behind a low-pass, or
- * both together clearly better than either: the tails of pulses look like both. */
+ * both together clearly better than either: the tails of pulses look like both.  first:
+ * as above. */
 static double find_drift(const struct quiet *steps, int first)
 {
 	const double clear = SIGMAS_RARELY * SIGMAS_RARELY;
