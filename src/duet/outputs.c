@@ -190,10 +190,10 @@ static void put_section(struct found *out, const struct separate_section *s)
 static void put_histogram(struct found *out, const struct separate_section *s)
 {
 	for (int i = 0; i < MASKS_CELLS * MASKS_CELLS; i++) {
+		const int at = i / MASKS_CELLS;
 		double a, delta;
 
-		masks_cell(s->masks, i / MASKS_CELLS + 0.5, i % MASKS_CELLS + 0.5, &a,
-			&delta);
+		masks_cell(s->masks, at + 0.5, i % MASKS_CELLS + 0.5, &a, &delta);
 		const double row[4] = { (double)s->number, a, delta / (double)out->rate,
 			masks_histogram(s->masks)[i] };
 
