@@ -314,7 +314,7 @@ static int run(const char *path)
 	if (frames > 0)
 		put(&c, NULL, tail);
 	signal_done(c.out);
-	within = !zero_phase && frames > 0 && frames <= (double)(order / 2);
+	within = !zero_phase && frames > 0 && 2 * frames <= (double)order;
 	if (within)
 		warn("%s: the delay of order %ld is longer than the %.0f frames: the output "
 		     "shows none of them, as it does with --zero-phase",

@@ -220,9 +220,12 @@ static void make_channel_basis(struct joint *j, int c)
 	if (!free_tones && s->tones > 0)
 		add_known_tones(j, c, BASIS_MAX - 2 * slow - 1);
 	known = basis->vectors;
-	for (int k = 2; k < 2 * slow + 2; k++)
+	for (int k = 2; k < 2 * slow + 2; k++) {
+		const int halves = k / 2; /* half periods in n samples */
+
 		draw_wave(j, c, basis->vectors++, k % 2 ? sin : cos,
-			M_PI * (k / 2) / (double)j->n, 0, 0);
+			M_PI * halves / (double)j->n, 0, 0);
+	}
 	draw_wave(j, c, basis->vectors++, cos, 0, 0, 0);
 	for (int k = 0; k < 2 * free_tones; k++)
 		draw_wave(
@@ -237,6 +240,15 @@ static void make_channel_basis(struct joint *j, int c)
 	}
 }
 
+static int same_key(const double *a, const double *b)
+{
+	int k = 0;
+
+	while (k < BASIS_OF && a[k] == b[k])
+		k++;
+	return k == BASIS_OF;
+}
+
 /* Basis of offset, baseline and tones over n samples. */
 static void make_basis(struct joint *j)
 {
@@ -245,12 +257,12 @@ static void make_basis(struct joint *j)
 	const int differ = hidden || (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
 	double of[BASIS_OF] = { (double)j->n, differ, s->tones, s->tone_variance,
 		s->tone_hop, s->tone_knot[0], s->tone_knot[1], s->low };
-	struct basis *b = j->bases;
+	struct basis *b;
 
 	memcpy(of + BASIS_OF - JOINT_TONES_MAX, s->omega,
 		(size_t)s->tones * sizeof *s->omega);
 	for (int i = 0; i < j->nbases && !hidden; i++)
-		if (!memcmp(j->bases[i].of, of, sizeof of)) {
+		if (same_key(j->bases[i].of, of)) {
 			j->basis = &j->bases[i];
 			return;
 		}
