@@ -78,7 +78,7 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 		whitening_apply(w, y[c], N);
 	}
 	colour_spectrum(
-		y[0] + skip, y[1] + skip, n, SEGMENT, power[0], power[1], &segments);
+		y[0] + skip, y[1] + skip, n, 0, SEGMENT, power[0], power[1], &segments);
 	for (int k = 0; k < BINS; k++)
 		/* A Hann window leaks two bins far. */
 		if (k >= w->low * SEGMENT + 2 && k <= w->high * SEGMENT - 2) {
@@ -209,7 +209,7 @@ static void test_pulses(int spacing, int burst, const char *what)
 			for (int c = 0; c < 2; c++)
 				y[c][i] += (c ? 100 : 15) *
 					   sin(2 * acos(-1) * (i % 100) / 100.0);
-	colour_spectrum(y[0], y[1], N, SHORT, power[0], power[1], &segments);
+	colour_spectrum(y[0], y[1], N, 0, SHORT, power[0], power[1], &segments);
 	for (int k = 1; k < BINS; k++)
 		for (int c = 0; c < 2; c++)
 			sum[c] += power[c][k] / (BINS - 1);
@@ -447,8 +447,8 @@ int main(void)
 		"the power of the noise is right with bursts of pulses in 30 % of the record");
 	test_pulses(1000, 300,
 		"the power of the noise is right with pulses spread over 30 % of the record");
-	ok(colour_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000, &segments) ==
-				NUM_OK &&
+	ok(colour_spectrum(y[0], y[1], 255, 0, 256, y[0] + 1000, y[1] + 1000,
+		   &segments) == NUM_OK &&
 			segments == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();

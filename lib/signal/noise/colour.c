@@ -17,18 +17,22 @@ enum { LONGEST = 2 * (COLOUR_BINS - 1), FEWEST = 16 };
  * noise exceeds about once in 1e6. */
 static const double loud = 2.8;
 
-/* Periodograms of count half-overlapping segments, each of bins + 1 values. */
+/* Periodograms of count half-overlapping segments of the samples or, with steps, of their
+ * differences, each of bins + 1 values. */
 static enum num_status transform(
-	const double *y, size_t segment, size_t count, double *power)
+	const double *y, int steps, size_t segment, size_t count, double *power)
 {
 	size_t bins = segment / 2;
 	struct periodogram *p = periodogram_new(segment);
 
 	for (size_t i = 0; p && i < count; i++, power += bins + 1) {
+		const double *x = y + i * bins;
+
 		for (size_t k = 0; k < segment; k++) {
 			double angle = 2 * M_PI * ((double)k + 0.5) / (double)segment;
 
-			p->x[k] = y[i * bins + k] * (0.5 - 0.5 * cos(angle));
+			p->x[k] = (steps ? x[k + 1] - x[k] : x[k]) *
+				  (0.5 - 0.5 * cos(angle));
 		}
 		periodogram_add(p, 8 / (3 * (double)segment), power, bins + 1);
 	}
@@ -77,21 +81,22 @@ static int is_noise(
 	return 1;
 }
 
-enum num_status colour_spectrum(const double *y1, const double *y2, size_t n,
+enum num_status colour_spectrum(const double *y1, const double *y2, size_t n, int steps,
 	size_t segment, double *power1, double *power2, int *found)
 {
 	enum { PASSES = 4 };
-	size_t bins = segment / 2, count = n / bins > 1 ? n / bins - 1 : 0;
+	size_t bins = segment / 2, halves = (steps && n > 0 ? n - 1 : n) / bins;
+	size_t count = halves > 1 ? halves - 1 : 0;
 	size_t all = count * (bins + 1);
 	double *power = calloc(2 * all + count + 1, sizeof *power);
 	double *const spectrum[2] = { power1, power2 };
 	char *noise = malloc(count + 1);
 	enum num_status status =
-		power && noise ? transform(y1, segment, count, power) : NUM_MEMORY;
+		power && noise ? transform(y1, steps, segment, count, power) : NUM_MEMORY;
 
 	*found = 0;
 	if (status == NUM_OK)
-		status = transform(y2, segment, count, power + all);
+		status = transform(y2, steps, segment, count, power + all);
 	for (int c = 0; c < 2 && status == NUM_OK; c++)
 		quartile_spectrum(power + (size_t)c * all, bins, count, power + 2 * all,
 			spectrum[c]);
@@ -165,8 +170,8 @@ static int is_enough(const struct quiet *quiet)
 
 /* The noise in the longest segments, of at least so many samples, of which FEWEST hold
  * only noise, and not pulses instead, as enough shorter ones show. */
-static enum num_status find_quiet(
-	const double *y1, const double *y2, size_t n, double least, struct quiet *quiet)
+static enum num_status find_quiet(const double *y1, const double *y2, size_t n, int steps,
+	double least, struct quiet *quiet)
 {
 	enum { SHORTEST = 64 };
 	enum num_status status = NUM_OK;
@@ -177,8 +182,8 @@ static enum num_status find_quiet(
 		segment /= 2) {
 		struct quiet now = { .segment = segment };
 
-		status = colour_spectrum(
-			y1, y2, n, segment, now.power[0], now.power[1], &now.found);
+		status = colour_spectrum(y1, y2, n, steps, segment, now.power[0],
+			now.power[1], &now.found);
 		if (status == NUM_OK &&
 			(quiet->found < FEWEST ||
 				(is_enough(&now) && holds_pulses(quiet, &now))))
@@ -191,7 +196,7 @@ enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	const struct whitening *w, double noise[2])
 {
 	struct quiet quiet;
-	enum num_status status = find_quiet(y1, y2, n, 4 / (w->high - w->low), &quiet);
+	enum num_status status = find_quiet(y1, y2, n, 0, 4 / (w->high - w->low), &quiet);
 
 	for (int c = 0; c < 2 && status == NUM_OK; c++)
 		noise[c] = sqrt(level(w, quiet.power[c], quiet.segment));
@@ -259,12 +264,31 @@ static enum num_status sharpen(double *power, size_t bins)
  * fewest of 5, 8 and 12 find 24, 24 and 25. */
 enum { DRIFT_FIRST = 2, DRIFT_END = 32, DRIFT_FEWEST = 6 };
 
-/* Power of the steps of white noise at frequency k / segment, as its periodograms under a
- * Hann window have it. */
-static double step_power(double k, size_t segment)
+/* Power of the differences of successive samples, the mean of both channels, and that of
+ * white noise, as periodograms under a Hann window have them.  The window spreads the
+ * power of a walk from its lowest frequencies over others, but not that of its steps,
+ * which is white. */
+struct steps {
+	size_t segment;
+	int found;
+	double power[COLOUR_BINS], white[COLOUR_BINS];
+};
+
+static void mean_power(const struct quiet *quiet, double *power)
 {
-	return 2 - 2 * window_autocorrelation(segment, 1, 0) *
-			   cos(2 * M_PI * k / (double)segment);
+	for (int k = 0; k < COLOUR_BINS; k++)
+		power[k] = 0.5 * (quiet->power[0][k] + quiet->power[1][k]);
+}
+
+static void set_steps(const struct quiet *quiet, struct steps *s)
+{
+	const double next = window_autocorrelation(quiet->segment, 1, 0);
+
+	s->segment = quiet->segment;
+	s->found = quiet->found;
+	mean_power(quiet, s->power);
+	for (int k = 0; k < COLOUR_BINS; k++)
+		s->white[k] = 2 - 2 * next * cos(2 * M_PI * k / (double)s->segment);
 }
 
 /* Powers of white noise, unless corner is 0 of noise behind a low-pass of this corner, in
@@ -273,10 +297,11 @@ static double step_power(double k, size_t segment)
  * variates of the mean fitted.  *drift: as in struct colour.  Returns the deviance of
  * these means; INFINITY: there is no solution. */
 static double fit_steps(
-	const struct quiet *steps, int first, double corner, int walk, double *drift)
+	const struct steps *steps, int first, double corner, int walk, double *drift)
 {
 	enum { ROUNDS = 8, MOST = 3 };
-	const int end = DRIFT_END * (int)steps->segment / LONGEST;
+	const int most = DRIFT_END * (int)steps->segment / LONGEST;
+	const int end = most > DRIFT_FEWEST ? most : DRIFT_FEWEST;
 	const int terms = 1 + (corner > 0) + walk;
 	double x[MOST] = { 0 }, a[MOST * MOST], deviance = 0, level;
 
@@ -285,11 +310,10 @@ static double fit_steps(
 
 		memset(a, 0, sizeof a);
 		deviance = 0;
-		for (int k = first; k <= (end > DRIFT_FEWEST ? end : DRIFT_FEWEST); k++) {
-			double white = step_power(k, steps->segment);
+		for (int k = first; k <= end; k++) {
+			double white = steps->white[k], power = steps->power[k];
 			double passed = white / (1 + pow(k / corner, 2));
 			double term[MOST] = { white, corner > 0 ? passed : 1, 1 };
-			double power = 0.5 * (steps->power[0][k] + steps->power[1][k]);
 			double mean =
 				round ? fmax(dot(x, term, MOST), 0.1 * power) : power;
 			double weight = 2 * steps->found / (mean * mean);
@@ -315,7 +339,7 @@ static double fit_steps(
  * frequencies; 0 unless it explains them clearly better than noise behind a low-pass, or
  * both together clearly better than either: the tails of pulses look like both.  first:
  * as above. */
-static double find_drift(const struct quiet *steps, int first)
+static double find_drift(const struct steps *steps, int first)
 {
 	const double clear = SIGMAS_RARELY * SIGMAS_RARELY;
 	double drift, both = 0, low_pass = INFINITY, beside = INFINITY;
@@ -338,53 +362,33 @@ static double find_drift(const struct quiet *steps, int first)
 	return walk + clear < low_pass ? drift : 0;
 }
 
-/* The noise of the differences of successive samples.  A window spreads the power of a
- * walk from its lowest frequencies over others, but not that of its steps, which is
- * white.
- */
-static enum num_status find_steps(
-	const double *y1, const double *y2, size_t n, struct quiet *steps)
-{
-	const size_t count = n > 0 ? n - 1 : 0;
-	double *d = malloc((2 * count + 1) * sizeof *d);
-	enum num_status status = d ? NUM_OK : NUM_MEMORY;
-
-	for (size_t i = 0; d && i < count; i++) {
-		d[i] = y1[i + 1] - y1[i];
-		d[count + i] = y2[i + 1] - y2[i];
-	}
-	if (status == NUM_OK)
-		status = find_quiet(d, d + count, count, 0, steps);
-	free(d);
-	return status;
-}
-
 enum num_status colour_power(
 	const double *y1, const double *y2, size_t n, struct colour *colour)
 {
-	struct quiet quiet, steps;
-	enum num_status status = find_quiet(y1, y2, n, 0, &quiet);
+	struct quiet quiet;
+	struct steps steps;
+	double *power = colour->power;
+	enum num_status status = find_quiet(y1, y2, n, 1, 0, &quiet);
 
 	colour->drift = 0;
-	if (status == NUM_OK)
-		status = find_steps(y1, y2, n, &steps);
 	if (status != NUM_OK)
 		return status;
+	set_steps(&quiet, &steps);
 	/* What is left of lines has little power at the lowest frequency, where a walk
 	 * has most. */
-	if (is_enough(&steps) && find_drift(&steps, 1) > 0)
+	if (is_enough(&quiet) && find_drift(&steps, 1) > 0)
 		colour->drift = find_drift(&steps, DRIFT_FIRST);
-	if (colour->drift > 0)
-		quiet = steps;
-	for (int k = 0; k < COLOUR_BINS; k++)
-		colour->power[k] = 0.5 * (quiet.power[0][k] + quiet.power[1][k]);
-	if (!is_enough(&quiet))
-		return NUM_DOMAIN;
-	for (int k = 1; colour->drift > 0 && k < COLOUR_BINS; k++)
-		colour->power[k] /= step_power(k, quiet.segment) + colour->drift;
-	if (colour->drift > 0)
-		colour->power[0] = colour->power[1];
-	return sharpen(colour->power, quiet.segment / 2 + 1);
+	if (colour->drift > 0) {
+		for (int k = 1; k < COLOUR_BINS; k++)
+			power[k] = steps.power[k] / (steps.white[k] + colour->drift);
+		power[0] = power[1];
+	} else {
+		status = find_quiet(y1, y2, n, 0, 0, &quiet);
+		mean_power(&quiet, power);
+		if (status == NUM_OK && !is_enough(&quiet))
+			status = NUM_DOMAIN;
+	}
+	return status == NUM_OK ? sharpen(power, quiet.segment / 2 + 1) : status;
 }
 
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,

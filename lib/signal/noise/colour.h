@@ -22,15 +22,16 @@ struct colour {
 enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	const struct whitening *w, double noise[2]);
 
-/* power1, power2[k], 0 < k <= segment / 2: of the noise of y1, y2[0 .. n) at frequency k
- * / segment, v for white noise of variance v; those at 0 are those at 1.  segment: even.
+/* power1, power2[k], 0 < k <= segment / 2: of the noise of y1, y2[0 .. n) or, with steps,
+ * of the differences of successive samples, at frequency k / segment, v for white noise
+ * of variance v; those at 0 are those at 1.  segment: even.
  *
  * The record is cut into half-overlapping segments under a Hann window.  A first spectrum
  * is the lower quartile of each frequency over all segments, which pulses in up to half
  * of them change little; then, repeated a few times, the mean of the segments whose power
  * nowhere exceeds the last spectrum significantly.  *found: number of these; 0: the
  * spectra are unknown. */
-enum num_status colour_spectrum(const double *y1, const double *y2, size_t n,
+enum num_status colour_spectrum(const double *y1, const double *y2, size_t n, int steps,
 	size_t segment, double *power1, double *power2, int *found);
 
 /* Spectrum of the noise at COLOUR_BINS frequencies from 0 to half the rate, the mean of
