@@ -219,5 +219,5 @@ is "all particles of $HOURS hours are found" "$(value matched)" $((HOURS * 30))
 check "$HOURS hours: the number of false rows" "$(value false)" '<=' 5
 check "$HOURS hours: the rms error of the arrivals in s" "$(value time1_rms)" '<=' 5e-6
 check "$HOURS hours: the memory in kB" "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++)
-	if ($i ~ /memory/) k = i; next } { print $k }' stats.tsv)" '<=' 21000
+	if ($i ~ /memory/) k = i; next } { print $k }' stats.tsv)" '<=' 20000
 done_testing

@@ -36,10 +36,15 @@ static void hide_last(struct buffer *b, size_t lost)
 		buffer_hide(b, i);
 }
 
+static size_t ratio_of(const struct buffer *b)
+{
+	return b->ratio ? b->ratio : 1;
+}
+
 /* Adds a sample to the mean; lost: so many of the last ones are not measured. */
 static void put(struct buffer *b, double x, size_t lost)
 {
-	const size_t ratio = b->ratio ? b->ratio : 1;
+	const size_t ratio = ratio_of(b);
 
 	b->sum += x;
 	b->lost |= lost > 0;
@@ -58,7 +63,7 @@ static void put(struct buffer *b, double x, size_t lost)
 enum num_status buffer_append(
 	struct buffer *b, const double *x, const size_t *lost, size_t n)
 {
-	if (reserve(b, n / (b->ratio ? b->ratio : 1) + 1) != NUM_OK)
+	if (reserve(b, (b->parts + n) / ratio_of(b)) != NUM_OK)
 		return NUM_MEMORY;
 	for (size_t i = 0; i < n; i++)
 		put(b, x[i], lost[i]);
