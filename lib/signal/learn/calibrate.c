@@ -444,7 +444,7 @@ static enum separate_status without_crosstalk(
  * they do not drift. */
 static enum num_status find_step(const double *y, size_t n, double *step)
 {
-	struct colour noise;
+	struct colour noise = { .drift = 0 };
 	enum num_status status = colour_power(y, y + n, n, &noise);
 
 	*step = status == NUM_OK ? sqrt(noise.drift * noise.power[0]) : 0;
